@@ -1,0 +1,203 @@
+//! One clear error: what is wrong, where, and what to type next.
+
+use std::fmt;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+mod render;
+
+/// The result of anything that a user's input can make fail.
+pub type Result<T> = std::result::Result<T, Box<Diagnostic>>;
+
+/// The kind of a failure decides the exit status of the program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// The command line is wrong: exit status 2.
+    Usage,
+    /// An input file is wrong: exit status 3.
+    Input,
+    /// A limit stopped a script or a plugin, or a running watch found a fault: exit status 4.
+    Limit,
+    /// Refused for trust: exit status 5.
+    Trust,
+    /// Files and disk: exit status 6.
+    Disk,
+    /// Recorded state does not fit: exit status 7.
+    State,
+}
+
+impl Kind {
+    /// The exit status of the program.
+    #[must_use]
+    pub const fn exit_status(self) -> u8 {
+        match self {
+            Self::Usage => 2,
+            Self::Input => 3,
+            Self::Limit => 4,
+            Self::Trust => 5,
+            Self::Disk => 6,
+            Self::State => 7,
+        }
+    }
+}
+
+/// A text file as the user wrote it, kept so that errors can show its lines.
+#[derive(Debug, Clone)]
+pub struct SourceText {
+    /// The path as the user gave it.
+    pub path: PathBuf,
+    /// The whole text.
+    pub text: Arc<str>,
+}
+
+impl SourceText {
+    /// A source from a path and its text.
+    #[must_use]
+    pub fn new(path: impl Into<PathBuf>, text: impl Into<Arc<str>>) -> Self {
+        Self { path: path.into(), text: text.into() }
+    }
+
+    /// The byte range of one line, 1-based, without its line break; an empty range at the end if there is no such line.
+    #[must_use]
+    pub fn line_range(&self, line: usize) -> Range<usize> {
+        let mut start = 0;
+        for (index, text) in self.text.split_inclusive('\n').enumerate() {
+            if index + 1 == line {
+                return start..start + text.trim_end_matches(['\n', '\r']).len();
+            }
+            start += text.len();
+        }
+        self.text.len()..self.text.len()
+    }
+
+    /// The byte offset of a line and a column, both 1-based and counted in characters; clamped to the line's end.
+    #[must_use]
+    pub fn offset(&self, line: usize, column: usize) -> usize {
+        let range = self.line_range(line);
+        let text = &self.text[range.clone()];
+        range.start + text.char_indices().nth(column.saturating_sub(1)).map_or(text.len(), |(index, _)| index)
+    }
+
+    /// The line and column, both 1-based, of a byte offset.
+    #[must_use]
+    pub fn position(&self, offset: usize) -> (usize, usize) {
+        let mut offset = offset.min(self.text.len());
+        while !self.text.is_char_boundary(offset) {
+            offset -= 1;
+        }
+        let before = &self.text[..offset];
+        let line_start = before.rfind('\n').map_or(0, |index| index + 1);
+        (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
+    }
+
+    /// The byte range of the word (letters, digits, underscore) at `offset`, at least one character long where possible.
+    #[must_use]
+    pub fn word_at(&self, offset: usize) -> Range<usize> {
+        let tail = &self.text[offset.min(self.text.len())..];
+        let word = tail.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(tail.len());
+        let length = if word > 0 { word } else { tail.chars().next().filter(|c| *c != '\n').map_or(0, char::len_utf8) };
+        offset..offset + length
+    }
+}
+
+/// A place in a source, with the words to write under it.
+#[derive(Debug, Clone)]
+pub struct Place {
+    /// The text that holds the mistake.
+    pub source: SourceText,
+    /// The bytes to underline.
+    pub span: Range<usize>,
+    /// What is written beside the caret: what was found.
+    pub label: String,
+}
+
+/// An error for a person.
+#[derive(Debug, Clone)]
+pub struct Diagnostic {
+    /// A stable code such as `E-SCRIPT-FACT`.
+    pub code: &'static str,
+    /// Which exit status it causes.
+    pub kind: Kind,
+    /// What is wrong: lower case, one sentence, no jargon.
+    pub message: String,
+    /// Where, if it is a place in a file.
+    pub place: Option<Box<Place>>,
+    /// What to type or change next.
+    pub help: Option<String>,
+}
+
+impl Diagnostic {
+    /// An error without a place.
+    pub fn new(kind: Kind, code: &'static str, message: impl Into<String>) -> Self {
+        Self { code, kind, message: message.into(), place: None, help: None }
+    }
+
+    /// The same, pointing at `span` of `source` with `label` beside the caret.
+    #[must_use]
+    pub fn at(mut self, source: &SourceText, span: Range<usize>, label: impl Into<String>) -> Self {
+        self.place = Some(Box::new(Place { source: source.clone(), span, label: label.into() }));
+        self
+    }
+
+    /// The same, with the next step.
+    #[must_use]
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    /// A failed file operation, with the system's reason in plain words.
+    #[must_use]
+    pub fn disk(action: &str, path: &Path, error: &std::io::Error) -> Self {
+        let reason = match error.kind() {
+            std::io::ErrorKind::NotFound => "there is no such file or folder".to_owned(),
+            std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
+            std::io::ErrorKind::StorageFull => "the disk is full".to_owned(),
+            std::io::ErrorKind::ReadOnlyFilesystem => "the file system is read-only".to_owned(),
+            _ => error.to_string(),
+        };
+        Self::new(Kind::Disk, "E-IO", format!("cannot {action} '{}': {reason}", path.display()))
+    }
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "error[{}]: {}", self.code, self.message)
+    }
+}
+
+impl std::error::Error for Diagnostic {}
+
+impl<T> From<Diagnostic> for Result<T> {
+    fn from(diagnostic: Diagnostic) -> Self {
+        Err(Box::new(diagnostic))
+    }
+}
+
+/// The name nearest to `wrong` among `names`, if one is near enough to be meant.
+pub fn nearest_name<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let allowed = (wrong.chars().count() / 3).clamp(1, 3);
+    names
+        .into_iter()
+        .map(|name| (strsim::damerau_levenshtein(&wrong.to_lowercase(), &name.to_lowercase()), name))
+        .filter(|(distance, _)| *distance <= allowed)
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, name)| name)
+}
+
+/// Text from a stranger's file made safe for a terminal: control characters escaped, cut at 200 characters.
+#[must_use]
+pub fn printable(text: &str) -> String {
+    let mut out = String::new();
+    for (count, c) in text.chars().enumerate() {
+        if count == 200 {
+            out.push('…');
+            break;
+        }
+        // Bidirectional controls can make a line read as something else than it is.
+        let hidden = c.is_control() || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+        if hidden { out.extend(c.escape_unicode()) } else { out.push(c) }
+    }
+    out
+}

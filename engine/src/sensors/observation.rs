@@ -1,0 +1,60 @@
+//! What the robot measures in one step, and nothing else.
+
+use crate::geometry::Twist;
+use filter_api::{FilterError, Format, Frame};
+
+/// A camera image that owns its pixels: RGB, row-major, top row first.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Image {
+    /// Pixels in a row.
+    pub width_px: usize,
+    /// Rows.
+    pub height_px: usize,
+    /// `width_px * height_px * 3` bytes.
+    pub pixels: Vec<u8>,
+}
+
+impl Image {
+    /// A black image.
+    #[must_use]
+    pub fn new(width_px: usize, height_px: usize) -> Self {
+        Self { width_px, height_px, pixels: vec![0; width_px * height_px * Format::Rgb.channels()] }
+    }
+
+    /// The image as filters read it.
+    ///
+    /// # Errors
+    /// If the pixels do not fit the size.
+    pub fn frame(&self) -> Result<Frame<'_>, FilterError> {
+        Frame::new(self.width_px, self.height_px, Format::Rgb, &self.pixels)
+    }
+}
+
+/// One sweep of the laser: a range for each beam, beam 0 rightmost, anticlockwise.
+///
+/// ```text
+///            beam 90 (front)
+///                 |
+///   beam 180 -----+----- beam 0     seen from above, 181 beams over 180 degrees
+///    (left)     robot     (right)
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scan {
+    /// Metres, each within the laser's minimum and maximum range; nothing seen is the maximum. Never NaN.
+    pub ranges_m: Vec<f32>,
+}
+
+/// All that one step measures.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Observation {
+    /// The camera's image.
+    pub image: Image,
+    /// The laser's scan.
+    pub scan: Scan,
+    /// The bumper: the body touched something during the last step.
+    pub contact: bool,
+    /// The robot has lost its footing (tilt switch).
+    pub fallen: bool,
+    /// Speeds from the wheel encoders.
+    pub odometry: Twist,
+}

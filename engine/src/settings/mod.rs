@@ -1,0 +1,194 @@
+//! What a behaviour sets up: plain numbers and names, as written, each with one default.
+//!
+//! Nothing here opens a file or knows a script. [`table`] is the one list of settings: the set-up calls of scripts,
+//! `--set`, `run.toml`, range checks and the reference page all read it.
+
+mod table;
+
+use crate::geometry::Twist;
+pub use table::{SETTINGS, Setting, SettingError, Shape, Value, apply};
+
+/// Everything that a run needs besides its seed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// Name of a world, or path of a world file.
+    pub world: String,
+    /// The filter chain, first stage first; empty means the default chain.
+    pub filters: Vec<FilterSettings>,
+    /// The actions that the learner chooses from.
+    pub actions: Vec<Twist>,
+    /// Length and rhythm of a run.
+    pub run: RunSettings,
+    /// The robot's motion.
+    pub robot: RobotSettings,
+    /// The camera and its mount.
+    pub camera: CameraSettings,
+    /// The laser and its mount.
+    pub laser: LaserSettings,
+    /// How a filtered image becomes a state.
+    pub grid: GridSettings,
+    /// The way of learning and its parameters.
+    pub learner: LearnerSettings,
+    /// What `then recover` does.
+    pub recovery: RecoverySettings,
+}
+
+/// One stage of the filter chain.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FilterSettings {
+    /// The filter's name.
+    pub name: String,
+    /// The parameters that the user set; the others have their defaults.
+    pub parameters: Vec<(String, f64)>,
+}
+
+/// Length and rhythm of a run.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs, reason = "every field is documented in the table of settings")]
+pub struct RunSettings {
+    pub steps: u64,
+    pub test_steps: u64,
+    pub period_s: f64,
+}
+
+/// The robot's motion.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs, reason = "every field is documented in the table of settings")]
+pub struct RobotSettings {
+    pub lag_s: f64,
+    pub speed_noise: f64,
+    pub slip: f64,
+    pub tick_s: f64,
+}
+
+/// The camera and its mount.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs, reason = "every field is documented in the table of settings")]
+pub struct CameraSettings {
+    pub width_px: u64,
+    pub height_px: u64,
+    pub field_of_view_deg: f64,
+    pub lens: String,
+    pub forward_m: f64,
+    pub height_m: f64,
+    pub tilt_deg: f64,
+    pub noise: f64,
+}
+
+/// The laser and its mount.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs, reason = "every field is documented in the table of settings")]
+pub struct LaserSettings {
+    pub beams: u64,
+    pub forward_m: f64,
+    pub height_m: f64,
+    pub tilt_deg: f64,
+    pub min_range_m: f64,
+    pub max_range_m: f64,
+    pub noise_m: f64,
+}
+
+/// How a filtered image becomes a state.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs, reason = "every field is documented in the table of settings")]
+pub struct GridSettings {
+    pub rows: u64,
+    pub columns: u64,
+    pub occupied: f64,
+    pub fill: bool,
+}
+
+/// The way of learning and its parameters (Table 1 of the paper).
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs, reason = "every field is documented in the table of settings")]
+pub struct LearnerSettings {
+    pub kind: String,
+    pub step_size: f64,
+    pub discount: f64,
+    pub trace_decay: f64,
+    pub window: u64,
+    pub temperature: f64,
+    pub temperature_end: f64,
+    pub cooling_visits: u64,
+    pub initial_low: f64,
+    pub initial_high: f64,
+    pub failure_is_terminal: bool,
+}
+
+/// What `then recover` does.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs, reason = "every field is documented in the table of settings")]
+pub struct RecoverySettings {
+    pub to: String,
+    pub position_m: f64,
+    pub yaw_deg: f64,
+}
+
+/// The ways of learning, by name.
+pub const LEARNERS: &[&str] = &["ttd", "ttd-cichosz", "q", "sarsa-lambda"];
+
+/// Table 2 of the paper: forward speed in m/s, turning speed in rad/s.
+pub const PAPER_ACTIONS: [(f64, f64); 14] = [
+    (0.4, 0.2),
+    (0.4, 0.0),
+    (0.4, -0.2),
+    (0.2, 0.8),
+    (0.2, 0.6),
+    (0.2, 0.4),
+    (0.2, 0.2),
+    (0.2, 0.0),
+    (0.2, -0.2),
+    (0.2, -0.4),
+    (0.2, -0.6),
+    (0.2, -0.8),
+    (0.05, 0.8),
+    (0.05, -0.8),
+];
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            world: "room".to_owned(),
+            filters: Vec::new(),
+            actions: PAPER_ACTIONS.iter().map(|&(linear, angular)| Twist::new(linear, angular)).collect(),
+            run: RunSettings { steps: 5_200, test_steps: 5_000, period_s: 0.5 },
+            robot: RobotSettings { lag_s: 0.15, speed_noise: 0.05, slip: 0.0, tick_s: 0.05 },
+            // 53 cm above the robot's deck (paper, section 4.1) with the deck at 0.28 m.
+            camera: CameraSettings {
+                width_px: 160,
+                height_px: 120,
+                field_of_view_deg: 80.0,
+                lens: "pinhole".to_owned(),
+                forward_m: 0.10,
+                height_m: 0.81,
+                tilt_deg: 42.0,
+                noise: 2.0,
+            },
+            // Range limits of the SICK LMS 200 in Gazebo 0.7, the simulator of the paper's time.
+            laser: LaserSettings {
+                beams: 181,
+                forward_m: 0.18,
+                height_m: 0.38,
+                tilt_deg: 0.0,
+                min_range_m: 0.20,
+                max_range_m: 8.192,
+                noise_m: 0.005,
+            },
+            grid: GridSettings { rows: 3, columns: 3, occupied: 0.015, fill: true },
+            learner: LearnerSettings {
+                kind: "ttd".to_owned(),
+                step_size: 0.2,
+                discount: 0.99,
+                trace_decay: 0.9,
+                window: 3,
+                temperature: 0.07,
+                temperature_end: 0.009,
+                cooling_visits: 500,
+                initial_low: -1.0,
+                initial_high: -0.9,
+                failure_is_terminal: false,
+            },
+            recovery: RecoverySettings { to: "nearest".to_owned(), position_m: 0.1, yaw_deg: 8.6 },
+        }
+    }
+}

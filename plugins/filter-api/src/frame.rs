@@ -1,0 +1,141 @@
+//! Borrowed frames: what a filter reads and writes.
+
+use crate::FilterError;
+
+/// What one pixel holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// Three bytes: red, green, blue.
+    Rgb,
+    /// One byte of brightness.
+    Grey,
+    /// One byte, 0 or 255.
+    Mask,
+}
+
+impl Format {
+    /// Bytes for each pixel.
+    #[must_use]
+    pub const fn channels(self) -> usize {
+        match self {
+            Self::Rgb => 3,
+            Self::Grey | Self::Mask => 1,
+        }
+    }
+}
+
+/// One picture to read: row-major, top row first, no padding.
+#[derive(Debug, Clone, Copy)]
+pub struct Frame<'a> {
+    width_px: usize,
+    height_px: usize,
+    format: Format,
+    pixels: &'a [u8],
+}
+
+impl<'a> Frame<'a> {
+    /// A view of `pixels`.
+    ///
+    /// # Errors
+    /// If `pixels` is not exactly `width_px * height_px * format.channels()` long.
+    pub fn new(width_px: usize, height_px: usize, format: Format, pixels: &'a [u8]) -> Result<Self, FilterError> {
+        check_length(width_px, height_px, format, pixels.len())?;
+        Ok(Self { width_px, height_px, format, pixels })
+    }
+
+    /// Pixels in a row.
+    #[must_use]
+    pub const fn width_px(&self) -> usize {
+        self.width_px
+    }
+
+    /// Rows.
+    #[must_use]
+    pub const fn height_px(&self) -> usize {
+        self.height_px
+    }
+
+    /// What one pixel holds.
+    #[must_use]
+    pub const fn format(&self) -> Format {
+        self.format
+    }
+
+    /// All bytes, `stride()` for each row.
+    #[must_use]
+    pub const fn pixels(&self) -> &'a [u8] {
+        self.pixels
+    }
+
+    /// Bytes from one row to the next: width times channels.
+    #[must_use]
+    pub const fn stride(&self) -> usize {
+        self.width_px * self.format.channels()
+    }
+}
+
+/// One picture to fill, laid out as [`Frame`].
+#[derive(Debug)]
+pub struct FrameMut<'a> {
+    width_px: usize,
+    height_px: usize,
+    format: Format,
+    pixels: &'a mut [u8],
+}
+
+impl<'a> FrameMut<'a> {
+    /// A view of `pixels` to fill.
+    ///
+    /// # Errors
+    /// If `pixels` is not exactly `width_px * height_px * format.channels()` long.
+    pub fn new(width_px: usize, height_px: usize, format: Format, pixels: &'a mut [u8]) -> Result<Self, FilterError> {
+        check_length(width_px, height_px, format, pixels.len())?;
+        Ok(Self { width_px, height_px, format, pixels })
+    }
+
+    /// Pixels in a row.
+    #[must_use]
+    pub const fn width_px(&self) -> usize {
+        self.width_px
+    }
+
+    /// Rows.
+    #[must_use]
+    pub const fn height_px(&self) -> usize {
+        self.height_px
+    }
+
+    /// What one pixel holds.
+    #[must_use]
+    pub const fn format(&self) -> Format {
+        self.format
+    }
+
+    /// All bytes, row after row.
+    #[must_use]
+    pub fn pixels(&mut self) -> &mut [u8] {
+        self.pixels
+    }
+
+    /// Checks that `input` and this frame have the same size.
+    ///
+    /// # Errors
+    /// If they have not, with both sizes.
+    pub fn check_same_size(&self, input: &Frame<'_>) -> Result<(), FilterError> {
+        if (self.width_px, self.height_px) == (input.width_px, input.height_px) {
+            return Ok(());
+        }
+        Err(FilterError(format!(
+            "the output is {}x{} pixels, the input {}x{}",
+            self.width_px, self.height_px, input.width_px, input.height_px
+        )))
+    }
+}
+
+fn check_length(width_px: usize, height_px: usize, format: Format, length: usize) -> Result<(), FilterError> {
+    let wanted = width_px.checked_mul(height_px).and_then(|pixels| pixels.checked_mul(format.channels()));
+    if wanted == Some(length) {
+        return Ok(());
+    }
+    Err(FilterError(format!("{length} bytes do not make a frame of {width_px}x{height_px} pixels ({format:?})")))
+}
