@@ -2,6 +2,10 @@
 //!
 //! Plain data first; `Scene::new` puts every solid under one bounding volume hierarchy.
 
+use parry3d::bounding_volume::Aabb;
+use parry3d::math::Vector;
+use parry3d::partitioning::{Bvh, BvhBuildStrategy, TraversalAction};
+
 use crate::geometry::{Point3, Vector3};
 
 /// The form of a solid in its own axes, its centre at the origin.
@@ -112,4 +116,119 @@ pub struct SceneParts {
     pub floor: usize,
     /// The light.
     pub light: Light,
+}
+
+impl Shape {
+    /// Half extents of the box around the shape in its own axes, metres.
+    #[must_use]
+    pub fn half_extents(&self) -> Vector3 {
+        match *self {
+            Self::Box { half_m } | Self::Ramp { half_m } => half_m,
+            Self::Cylinder { radius_m, half_height_m } => Vector3::new(radius_m, radius_m, half_height_m),
+        }
+    }
+}
+
+impl Solid {
+    /// The corners of the box with the world's axes around the solid: least and greatest coordinates, metres.
+    #[must_use]
+    pub fn bounds(&self) -> (Point3, Point3) {
+        let half = self.shape.half_extents();
+        let reach = if let Shape::Cylinder { .. } = self.shape {
+            half
+        } else {
+            let (sin, cos) = libm::sincos(self.yaw_rad);
+            let (sin, cos) = (sin.abs(), cos.abs());
+            Vector3::new(cos * half.x + sin * half.y, sin * half.x + cos * half.y, half.z)
+        };
+        (self.centre - reach, self.centre + reach)
+    }
+}
+
+/// The solids of a world that stand still, under one bounding volume hierarchy.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    parts: SceneParts,
+    hierarchy: Bvh,
+}
+
+impl Scene {
+    /// Builds the hierarchy. The order of the solids decides their indices and is kept.
+    #[must_use]
+    pub fn new(parts: SceneParts) -> Self {
+        let leaves: Vec<Aabb> = parts.solids.iter().map(|solid| loose_box(solid.bounds())).collect();
+        Self { hierarchy: Bvh::from_leaves(BvhBuildStrategy::Binned, &leaves), parts }
+    }
+
+    /// The solids, materials, floor and light.
+    #[must_use]
+    pub fn parts(&self) -> &SceneParts {
+        &self.parts
+    }
+
+    /// Calls `each` with the index of every solid whose surrounding box, and all boxes around that one, `keep` accepts.
+    ///
+    /// `keep` gets the least and greatest corner of a box with the world's axes, metres. The order is that of the
+    /// hierarchy: the same in every run, but not sorted.
+    pub fn visit(&self, mut keep: impl FnMut([f32; 3], [f32; 3]) -> bool, mut each: impl FnMut(usize)) {
+        self.hierarchy.traverse(|node| {
+            if !keep(node.mins().to_array(), node.maxs().to_array()) {
+                return TraversalAction::Prune;
+            }
+            if let Some(solid) = node.leaf_data() {
+                each(solid as usize);
+            }
+            TraversalAction::Continue
+        });
+    }
+}
+
+/// The box in single precision, widened so that rounding never makes it smaller than the solid.
+fn loose_box((min, max): (Point3, Point3)) -> Aabb {
+    let loose = |value: f64, by: f64| (value + by * (1e-4 + value.abs() * 1e-6)) as f32;
+    Aabb::new(
+        Vector::new(loose(min.x, -1.0), loose(min.y, -1.0), loose(min.z, -1.0)),
+        Vector::new(loose(max.x, 1.0), loose(max.y, 1.0), loose(max.z, 1.0)),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn boxes(count: usize) -> Scene {
+        let solids = (0..count)
+            .map(|index| Solid {
+                shape: Shape::Box { half_m: Vector3::new(0.4, 0.4, 0.5) },
+                centre: Point3::new(index as f64, 0.0, 0.5),
+                yaw_rad: 0.0,
+                material: 0,
+                collides: true,
+            })
+            .collect();
+        let light = Light { towards: Vector3::z(), ambient: 0.5, gain: 1.0 };
+        Scene::new(SceneParts { solids, materials: Vec::new(), floor: 0, light })
+    }
+
+    fn between(scene: &Scene, low: f32, high: f32) -> Vec<usize> {
+        let mut found = Vec::new();
+        scene.visit(|min, max| min[0] <= high && max[0] >= low, |solid| found.push(solid));
+        found.sort_unstable();
+        found
+    }
+
+    #[test]
+    fn a_visit_finds_just_the_solids_whose_boxes_are_kept() {
+        assert_eq!(between(&boxes(50), 9.7, 12.3), [10, 11, 12]);
+        assert_eq!(between(&boxes(1), -1.0, 1.0), [0]);
+        assert_eq!(between(&boxes(0), -1.0, 1.0), [] as [usize; 0]);
+    }
+
+    #[test]
+    fn a_turned_box_has_wider_bounds() {
+        let mut solid = boxes(1).parts.solids.remove(0);
+        solid.yaw_rad = std::f64::consts::FRAC_PI_4;
+        let (_, max) = solid.bounds();
+        assert!((max.x - 0.8 * std::f64::consts::FRAC_1_SQRT_2).abs() < 1e-12);
+    }
 }
