@@ -1,9 +1,12 @@
 //! A fixed engine that learns robot behaviours which other people write as scripts.
 #![doc = ""]
 pub mod diagnostic;
+pub mod filter;
 pub mod geometry;
+pub mod learner;
 pub mod random;
 pub mod settings;
+pub mod state;
 pub mod world {
     //! TRUTH.
     pub mod scene;

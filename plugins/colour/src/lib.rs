@@ -1,1 +1,154 @@
-//! x
+//! One colour: a mask of the pixels whose hue and saturation match, however bright they are.
+//!
+//! The paper thresholds the red value alone, which fails as soon as the light changes. This filter compares *ratios* of
+//! the channels, which a change of brightness leaves as they are: with `max` and `min` of a pixel's red, green and blue,
+//! saturation is `(max - min) / max` and hue the usual angle on the colour circle (red 0°, green 120°, blue 240°). A
+//! pixel matches where its saturation is at least `saturation`, its hue at most `width_deg` away from `hue_deg`, and it
+//! is at least `dark` bright, since nearly black pixels have no reliable hue.
+//!
+//! All arithmetic is on whole numbers, so every machine marks the same pixels.
+
+#![forbid(unsafe_code)]
+
+use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, Plugin};
+
+/// The filter, ready to be registered.
+pub const PLUGIN: Plugin = Plugin { descriptor: &DESCRIPTOR, create };
+
+const DESCRIPTOR: Descriptor = Descriptor {
+    name: "colour",
+    version: env!("CARGO_PKG_VERSION"),
+    licence: "MIT OR Apache-2.0",
+    purpose: "Marks the pixels of one colour, whatever their brightness (hue and saturation).",
+    reads: &[Format::Rgb],
+    writes: Format::Mask,
+    parameters: &[
+        Parameter {
+            name: "hue_deg",
+            unit: "degrees",
+            min: 0.0,
+            max: 360.0,
+            default: 0.0,
+            purpose: "The hue to look for: red 0, yellow 60, green 120, blue 240.",
+        },
+        Parameter {
+            name: "width_deg",
+            unit: "degrees",
+            min: 1.0,
+            max: 180.0,
+            default: 25.0,
+            purpose: "How far the hue may be off on either side.",
+        },
+        Parameter {
+            name: "saturation",
+            unit: "share",
+            min: 0.01,
+            max: 1.0,
+            default: 0.4,
+            purpose: "How pure the colour must be; grey has 0.",
+        },
+        Parameter {
+            name: "dark",
+            unit: "grey levels",
+            min: 1.0,
+            max: 255.0,
+            default: 20.0,
+            purpose: "Pixels whose brightest channel is below this are never marked.",
+        },
+    ],
+};
+
+/// Hue is counted in 1/256 of a sixth of the circle: 0 to 1535.
+const CIRCLE: i32 = 6 * 256;
+
+struct Colour {
+    hue: i32,
+    width: i32,
+    /// Saturation in 1/256.
+    saturation: i32,
+    dark: i32,
+}
+
+fn create(values: &[f64]) -> Result<Box<dyn Filter>, FilterError> {
+    let [hue_deg, width_deg, saturation, dark] = values else {
+        return Err(FilterError(format!("colour takes 4 parameters, not {}", values.len())));
+    };
+    let steps = |degrees: f64| (degrees * f64::from(CIRCLE) / 360.0).round() as i32;
+    Ok(Box::new(Colour {
+        hue: steps(*hue_deg) % CIRCLE,
+        width: steps(*width_deg),
+        saturation: (saturation * 256.0).round() as i32,
+        dark: dark.round() as i32,
+    }))
+}
+
+impl Colour {
+    fn matches(&self, red: i32, green: i32, blue: i32) -> bool {
+        let max = red.max(green).max(blue);
+        let spread = max - red.min(green).min(blue);
+        if max < self.dark || spread * 256 < self.saturation * max || spread == 0 {
+            return false;
+        }
+        let hue = if max == red {
+            (green - blue) * 256 / spread
+        } else if max == green {
+            512 + (blue - red) * 256 / spread
+        } else {
+            1024 + (red - green) * 256 / spread
+        };
+        let apart = (hue - self.hue).rem_euclid(CIRCLE);
+        apart.min(CIRCLE - apart) <= self.width
+    }
+}
+
+impl Filter for Colour {
+    fn process(&mut self, input: Frame<'_>, mut output: FrameMut<'_>) -> Result<(), FilterError> {
+        output.check_same_size(&input)?;
+        if input.format() != Format::Rgb {
+            return Err(FilterError("colour reads colour frames only".to_owned()));
+        }
+        for (pixel, out) in input.pixels().chunks_exact(3).zip(output.pixels()) {
+            let matches = self.matches(i32::from(pixel[0]), i32::from(pixel[1]), i32::from(pixel[2]));
+            *out = if matches { 255 } else { 0 };
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mask(values: &[f64; 4], pixels: &[u8]) -> Vec<u8> {
+        let count = pixels.len() / 3;
+        let mut out = vec![7; count];
+        let input = Frame::new(count, 1, Format::Rgb, pixels).unwrap();
+        let output = FrameMut::new(count, 1, Format::Mask, &mut out).unwrap();
+        create(values).unwrap().process(input, output).unwrap();
+        out
+    }
+
+    const RED: [f64; 4] = [0.0, 25.0, 0.4, 20.0];
+
+    #[test]
+    fn red_is_found_at_full_half_and_a_fifth_of_the_light() {
+        assert_eq!(mask(&RED, &[220, 40, 30, 110, 20, 15, 44, 8, 6]), [255, 255, 255]);
+    }
+
+    #[test]
+    fn grey_orange_green_and_black_are_not_red() {
+        assert_eq!(mask(&RED, &[200, 200, 200, 230, 140, 20, 20, 220, 30, 8, 0, 0]), [0, 0, 0, 0]);
+    }
+
+    #[test]
+    fn hues_on_both_sides_of_zero_count_as_red() {
+        // (200, 40, 0) has a hue of 12 degrees, (200, 0, 40) of 348.
+        assert_eq!(mask(&RED, &[200, 40, 0, 200, 0, 40]), [255, 255]);
+    }
+
+    #[test]
+    fn another_hue_is_a_parameter() {
+        let blue = [240.0, 20.0, 0.5, 20.0];
+        assert_eq!(mask(&blue, &[10, 20, 200, 200, 10, 20]), [255, 0]);
+    }
+}

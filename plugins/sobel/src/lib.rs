@@ -1,1 +1,164 @@
-//! x
+//! Sobel edges: a mask of the pixels where brightness changes fast.
+//!
+//! * Luma of a colour pixel: `(77 R + 150 G + 29 B) / 256`, rounded down (ITU-R BT.601 weights in 8 bits).
+//! * Border rule: pixels outside the frame have the value of the nearest pixel inside.
+//! * Norm: Euclidean. A pixel is an edge where `gx² + gy² >= threshold²`, with the kernels
+//!   `gx = [-1 0 1; -2 0 2; -1 0 1]` and `gy` its transpose, so a step of 1 grey level has a norm of 4.
+
+#![forbid(unsafe_code)]
+
+use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, Plugin};
+
+/// The filter, ready to be registered.
+pub const PLUGIN: Plugin = Plugin { descriptor: &DESCRIPTOR, create };
+
+const DESCRIPTOR: Descriptor = Descriptor {
+    name: "sobel",
+    version: env!("CARGO_PKG_VERSION"),
+    licence: "MIT OR Apache-2.0",
+    purpose: "Marks edges: pixels where brightness changes fast (Sobel, Euclidean norm).",
+    reads: &[Format::Rgb, Format::Grey],
+    writes: Format::Mask,
+    parameters: &[Parameter {
+        name: "threshold",
+        unit: "norm of the gradient",
+        min: 1.0,
+        max: 1443.0,
+        default: 60.0,
+        purpose: "The norm from which a pixel is an edge; a step of one grey level has 4.",
+    }],
+};
+
+fn create(values: &[f64]) -> Result<Box<dyn Filter>, FilterError> {
+    let threshold = values.first().copied().unwrap_or(60.0);
+    // Gradients are whole numbers, so comparing with the next whole square is exact.
+    Ok(Box::new(Sobel { least_square: (threshold * threshold).ceil() as i32, luma: Vec::new() }))
+}
+
+struct Sobel {
+    /// The square of the norm from which a pixel is an edge.
+    least_square: i32,
+    /// Brightness with one pixel of border on every side.
+    luma: Vec<i16>,
+}
+
+impl Filter for Sobel {
+    fn process(&mut self, input: Frame<'_>, mut output: FrameMut<'_>) -> Result<(), FilterError> {
+        output.check_same_size(&input)?;
+        if input.width_px() == 0 || input.height_px() == 0 {
+            return Ok(());
+        }
+        self.fill_luma(&input)?;
+        let padded = input.width_px() + 2;
+        for (y, out) in output.pixels().chunks_exact_mut(input.width_px()).enumerate() {
+            let row = |index: usize| &self.luma[index * padded..(index + 1) * padded];
+            mark_edges(row(y), row(y + 1), row(y + 2), self.least_square, out);
+        }
+        Ok(())
+    }
+}
+
+impl Sobel {
+    fn fill_luma(&mut self, input: &Frame<'_>) -> Result<(), FilterError> {
+        let (width, height, padded) = (input.width_px(), input.height_px(), input.width_px() + 2);
+        self.luma.resize(padded * (height + 2), 0);
+        let rows = self.luma.chunks_exact_mut(padded).skip(1).take(height);
+        for (source, row) in input.pixels().chunks_exact(input.stride()).zip(rows) {
+            let inner = &mut row[1..=width];
+            match input.format() {
+                Format::Rgb => luma_of_colour(source, inner),
+                Format::Grey => inner.iter_mut().zip(source).for_each(|(luma, grey)| *luma = i16::from(*grey)),
+                Format::Mask => return Err(FilterError("sobel reads colour or grey frames, not a mask".to_owned())),
+            }
+            row[0] = row[1];
+            row[width + 1] = row[width];
+        }
+        self.luma.copy_within(padded..2 * padded, 0);
+        self.luma.copy_within(height * padded..(height + 1) * padded, (height + 1) * padded);
+        Ok(())
+    }
+}
+
+fn luma_of_colour(source: &[u8], luma: &mut [i16]) {
+    for (pixel, luma) in source.chunks_exact(3).zip(luma) {
+        let weighted = u16::from(pixel[0]) * 77 + u16::from(pixel[1]) * 150 + u16::from(pixel[2]) * 29;
+        *luma = (weighted >> 8) as i16;
+    }
+}
+
+fn mark_edges(top: &[i16], middle: &[i16], bottom: &[i16], least_square: i32, out: &mut [u8]) {
+    let width = out.len();
+    // Slices of one known length let the compiler drop the bounds checks and use vectors.
+    let (tl, tc, tr) = (&top[..width], &top[1..=width], &top[2..width + 2]);
+    let (ml, mr) = (&middle[..width], &middle[2..width + 2]);
+    let (bl, bc, br) = (&bottom[..width], &bottom[1..=width], &bottom[2..width + 2]);
+    for x in 0..width {
+        let gx = (tr[x] - tl[x]) + 2 * (mr[x] - ml[x]) + (br[x] - bl[x]);
+        let gy = (bl[x] - tl[x]) + 2 * (bc[x] - tc[x]) + (br[x] - tr[x]);
+        let square = i32::from(gx) * i32::from(gx) + i32::from(gy) * i32::from(gy);
+        out[x] = if square >= least_square { 255 } else { 0 };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn edges(width: usize, height: usize, grey: &[u8], threshold: f64) -> Vec<u8> {
+        let mut out = vec![7; width * height];
+        let input = Frame::new(width, height, Format::Grey, grey).unwrap();
+        let output = FrameMut::new(width, height, Format::Mask, &mut out).unwrap();
+        create(&[threshold]).unwrap().process(input, output).unwrap();
+        out
+    }
+
+    #[test]
+    fn a_vertical_step_of_15_levels_has_a_norm_of_60_on_both_sides() {
+        let row = [10, 10, 25, 25];
+        let grey: Vec<u8> = row.iter().copied().cycle().take(16).collect();
+        assert_eq!(edges(4, 4, &grey, 60.0), [0, 255, 255, 0].repeat(4));
+        assert_eq!(edges(4, 4, &grey, 60.1), [0; 16]);
+    }
+
+    #[test]
+    fn one_bright_pixel_marks_its_neighbours_and_not_itself() {
+        let mut grey = [0; 25];
+        grey[12] = 100;
+        let mut wanted = [0; 25];
+        for index in [6, 7, 8, 11, 13, 16, 17, 18] {
+            wanted[index] = 255;
+        }
+        // The corner neighbours have gx = gy = ±100: a norm of 141.4; the others 200.
+        assert_eq!(edges(5, 5, &grey, 141.0), wanted);
+    }
+
+    #[test]
+    fn the_border_repeats_the_nearest_pixel_so_a_flat_frame_has_no_edges() {
+        assert_eq!(edges(5, 3, &[200; 15], 1.0), [0; 15]);
+        assert_eq!(edges(1, 1, &[200], 1.0), [0]);
+    }
+
+    #[test]
+    fn colour_is_weighted_by_luma() {
+        // Pure green 40 has luma 150 * 40 / 256 = 23; a step of 23 levels has a norm of 92.
+        let row = [0, 0, 0, 0, 40, 0];
+        let mut out = [0; 2];
+        let input = Frame::new(2, 1, Format::Rgb, &row).unwrap();
+        let run = |threshold: f64, out: &mut [u8; 2]| {
+            let output = FrameMut::new(2, 1, Format::Mask, out).unwrap();
+            create(&[threshold]).unwrap().process(input, output).unwrap();
+        };
+        run(92.0, &mut out);
+        assert_eq!(out, [255, 255]);
+        run(92.1, &mut out);
+        assert_eq!(out, [0, 0]);
+    }
+
+    #[test]
+    fn a_mask_is_refused() {
+        let input = Frame::new(1, 1, Format::Mask, &[0]).unwrap();
+        let mut out = [0];
+        let output = FrameMut::new(1, 1, Format::Mask, &mut out).unwrap();
+        assert!(create(&[60.0]).unwrap().process(input, output).is_err());
+    }
+}

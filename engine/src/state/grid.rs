@@ -1,0 +1,246 @@
+//! The grid code of the paper, section 4.1.1: cells that hold enough foreground, coded into one number.
+//!
+//! ```text
+//!   +---+---+---+   row 0: top of the image, far away
+//!   | 0 | 1 | 2 |   cells are numbered row by row
+//!   +---+---+---+
+//!   | 3 | 4 | 5 |   with column fill, an occupied cell fills those above it, so a column has
+//!   +---+---+---+   rows + 1 heights: 0 free, 1 only the top row, 3 down to the bottom row
+//!   | 6 | 7 | 8 |
+//!   +---+---+---+   state = h(left) + 4 h(middle) + 16 h(right), 64 states
+//! ```
+
+use crate::settings::GridSettings;
+
+/// The most states that a grid may have.
+pub const MAX_STATES: usize = 1 << 19;
+
+/// Codes masks of one size.
+#[derive(Debug, Clone)]
+pub struct Grid {
+    rows: usize,
+    columns: usize,
+    fill: bool,
+    width_px: usize,
+    /// First pixel row of each grid row, and the image's height.
+    row_edges: Vec<usize>,
+    /// First pixel column of each grid column, and the image's width.
+    column_edges: Vec<usize>,
+    /// Foreground pixels from which each cell is occupied.
+    least: Vec<u32>,
+    counts: Vec<u32>,
+    occupied: Vec<bool>,
+    states: usize,
+}
+
+/// Why a grid cannot be: too many states, or more cells than pixels.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct GridError(pub String);
+
+impl Grid {
+    /// A grid over masks of `width_px` times `height_px`.
+    ///
+    /// # Errors
+    /// If it would have more than [`MAX_STATES`] states, or a cell without pixels.
+    pub fn new(settings: &GridSettings, width_px: usize, height_px: usize) -> Result<Self, GridError> {
+        let (rows, columns) = (settings.rows as usize, settings.columns as usize);
+        let (base, digits) = if settings.fill { (rows + 1, columns) } else { (2, rows * columns) };
+        let states = u32::try_from(digits).ok().and_then(|digits| base.checked_pow(digits));
+        let Some(states) = states.filter(|states| *states <= MAX_STATES) else {
+            return Err(GridError(format!(
+                "a grid of {rows}x{columns} has {base}^{digits} states, more than the limit of {MAX_STATES}"
+            )));
+        };
+        if columns > width_px || rows > height_px {
+            return Err(GridError(format!(
+                "a grid of {rows}x{columns} does not fit an image of {width_px}x{height_px} pixels"
+            )));
+        }
+        let edges = |cells: usize, pixels: usize| (0..=cells).map(|cell| cell * pixels / cells).collect::<Vec<_>>();
+        let (row_edges, column_edges) = (edges(rows, height_px), edges(columns, width_px));
+        let areas = row_edges
+            .windows(2)
+            .flat_map(|row| column_edges.windows(2).map(|column| (row[1] - row[0]) * (column[1] - column[0])));
+        let least = areas.map(|area| ((area as f64 * settings.occupied).ceil() as u32).max(1)).collect();
+        Ok(Self {
+            rows,
+            columns,
+            fill: settings.fill,
+            width_px,
+            row_edges,
+            column_edges,
+            least,
+            counts: vec![0; rows * columns],
+            occupied: vec![false; rows * columns],
+            states,
+        })
+    }
+
+    /// How many states there are.
+    #[must_use]
+    pub const fn states(&self) -> usize {
+        self.states
+    }
+
+    /// Rows and columns.
+    #[must_use]
+    pub const fn size(&self) -> (usize, usize) {
+        (self.rows, self.columns)
+    }
+
+    /// The state of a mask (row-major, 0 or 255), from 0 to `states() - 1`.
+    pub fn encode(&mut self, mask: &[u8]) -> usize {
+        self.count(mask);
+        for ((occupied, count), least) in self.occupied.iter_mut().zip(&self.counts).zip(&self.least) {
+            *occupied = count >= least;
+        }
+        if !self.fill {
+            return self.occupied.iter().rev().fold(0, |state, occupied| 2 * state + usize::from(*occupied));
+        }
+        let height = |column: usize| {
+            (0..self.rows).rev().find(|row| self.occupied[row * self.columns + column]).map_or(0, |row| row + 1)
+        };
+        (0..self.columns).rev().fold(0, |state, column| (self.rows + 1) * state + height(column))
+    }
+
+    fn count(&mut self, mask: &[u8]) {
+        self.counts.fill(0);
+        for (row, edges) in self.row_edges.windows(2).enumerate() {
+            let counts = &mut self.counts[row * self.columns..(row + 1) * self.columns];
+            for line in mask[edges[0] * self.width_px..edges[1] * self.width_px].chunks_exact(self.width_px) {
+                for (count, edges) in counts.iter_mut().zip(self.column_edges.windows(2)) {
+                    *count += foreground(&line[edges[0]..edges[1]]);
+                }
+            }
+        }
+    }
+
+    /// Foreground pixels of each cell, row by row, of the last mask.
+    #[must_use]
+    pub fn counts(&self) -> &[u32] {
+        &self.counts
+    }
+
+    /// Whether each cell of the last mask is occupied by itself, row by row.
+    #[must_use]
+    pub fn occupied(&self) -> &[bool] {
+        &self.occupied
+    }
+
+    /// Pixels of a cell.
+    #[must_use]
+    pub fn area_px(&self, cell: usize) -> usize {
+        let (row, column) = (cell / self.columns, cell % self.columns);
+        (self.row_edges[row + 1] - self.row_edges[row]) * (self.column_edges[column + 1] - self.column_edges[column])
+    }
+
+    /// The cells that a state stands for, row by row, filled columns included.
+    #[must_use]
+    pub fn cells(&self, state: usize) -> Vec<bool> {
+        let mut cells = vec![false; self.rows * self.columns];
+        let mut rest = state;
+        if self.fill {
+            for column in 0..self.columns {
+                for row in 0..rest % (self.rows + 1) {
+                    cells[row * self.columns + column] = true;
+                }
+                rest /= self.rows + 1;
+            }
+        } else {
+            for cell in &mut cells {
+                *cell = rest % 2 == 1;
+                rest /= 2;
+            }
+        }
+        cells
+    }
+}
+
+/// How many bytes of a mask's row are set.
+fn foreground(row: &[u8]) -> u32 {
+    // Sums of up to 255 ones fit a byte, and bytes add in vectors.
+    row.chunks(255).map(|part| u32::from(part.iter().map(|pixel| pixel & 1).sum::<u8>())).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid(rows: u64, columns: u64, fill: bool) -> Grid {
+        Grid::new(&GridSettings { rows, columns, occupied: 0.25, fill }, 6, 6).unwrap()
+    }
+
+    fn mask(cells: &[(usize, usize)]) -> Vec<u8> {
+        let mut mask = vec![0; 36];
+        for (row, column) in cells {
+            mask[row * 12 + column * 2] = 255;
+        }
+        mask
+    }
+
+    #[test]
+    fn the_paper_s_grid_has_64_states() {
+        let mut grid = grid(3, 3, true);
+        assert_eq!(grid.states(), 64);
+        assert_eq!(grid.encode(&mask(&[])), 0);
+        // Left column down to the middle row: 2; right column only the top row: 1 * 16.
+        assert_eq!(grid.encode(&mask(&[(1, 0), (0, 2)])), 2 + 16);
+        assert_eq!(grid.encode(&mask(&[(2, 0), (2, 1), (2, 2)])), 63);
+    }
+
+    #[test]
+    fn an_occupied_cell_fills_those_above_it() {
+        let mut grid = grid(3, 3, true);
+        let state = grid.encode(&mask(&[(1, 1)]));
+        assert_eq!(state, 2 * 4);
+        assert_eq!(grid.occupied().iter().filter(|occupied| **occupied).count(), 1);
+        let cells = grid.cells(state);
+        assert!(cells[1] && cells[4] && !cells[7]);
+    }
+
+    #[test]
+    fn without_fill_every_cell_is_one_bit() {
+        let mut grid = grid(3, 3, false);
+        assert_eq!(grid.states(), 512);
+        assert_eq!(grid.encode(&mask(&[(0, 0), (2, 2)])), 1 + 256);
+        assert!(grid.cells(257)[0] && grid.cells(257)[8] && !grid.cells(257)[4]);
+    }
+
+    #[test]
+    fn a_cell_is_occupied_from_its_share_of_pixels_on() {
+        // A cell has 4 pixels: a share of 0.25 is one pixel, of 0.26 two.
+        let settings = GridSettings { rows: 3, columns: 3, occupied: 0.26, fill: true };
+        let mut grid = Grid::new(&settings, 6, 6).unwrap();
+        assert_eq!(grid.encode(&mask(&[(0, 0)])), 0);
+        let mut two = mask(&[(0, 0)]);
+        two[1] = 255;
+        assert_eq!(grid.encode(&two), 1);
+    }
+
+    #[test]
+    fn every_state_stands_for_cells_that_code_into_it() {
+        let mut grid = grid(3, 2, true);
+        for state in 0..grid.states() {
+            let mut mask = vec![0; 36];
+            for (cell, _) in grid.cells(state).iter().enumerate().filter(|(_, set)| **set) {
+                mask[cell / 2 * 12 + cell % 2 * 3] = 255;
+                mask[cell / 2 * 12 + cell % 2 * 3 + 1] = 255;
+            }
+            assert_eq!(grid.encode(&mask), state);
+        }
+    }
+
+    #[test]
+    fn sizes_that_do_not_divide_share_the_pixels_out() {
+        let grid = Grid::new(&GridSettings { rows: 3, columns: 3, occupied: 0.1, fill: true }, 7, 5).unwrap();
+        assert_eq!((0..9).map(|cell| grid.area_px(cell)).sum::<usize>(), 35);
+    }
+
+    #[test]
+    fn too_many_states_are_refused_before_memory_is_taken() {
+        let large = GridSettings { rows: 16, columns: 16, occupied: 0.1, fill: false };
+        assert!(Grid::new(&large, 160, 120).unwrap_err().0.contains("2^256 states"));
+        let eight_by_four = GridSettings { rows: 4, columns: 8, occupied: 0.1, fill: true };
+        assert_eq!(Grid::new(&eight_by_four, 160, 120).unwrap().states(), 390_625);
+    }
+}
