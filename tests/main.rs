@@ -1,1 +1,15 @@
-//! x
+//! Integration tests, in one program. The table of contents:
+
+/// Runs the engine in a scratch folder.
+mod support;
+
+/// Imports between rooms, file sizes, forbidden words: the laws of ARCHITECTURE.md.
+mod architecture;
+/// Every mistake that a user can make gets one clear error; the texts stand in `snapshots/`.
+mod bad_input;
+/// Same seed, same bytes: twice, with one thread or two, stored and tested again.
+mod determinism;
+/// What a run leaves, and that it is well-formed.
+mod run_folder;
+/// Every script and world that ships can be used, and the reference pages are current.
+mod shipped;

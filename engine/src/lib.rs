@@ -1,21 +1,37 @@
 //! A fixed engine that learns robot behaviours which other people write as scripts.
-#![doc = ""]
+//!
+//! Data goes one way, and the rooms stand in its order:
+//!
+//! ```text
+//!   world -> sensors -> filter -> state -> learner -> (action) -> robot -> world
+//!                                   \-> reward: the script judges ->/
+//! ```
+//!
+//! `experiment` is the loop around them, `store` and `report` are what a run leaves, `settings`, `diagnostic`, `random`
+//! and `geometry` are what all share. ARCHITECTURE.md says what each room never knows.
+
+#![forbid(unsafe_code)]
+
 pub mod diagnostic;
-pub mod filter;
 pub mod geometry;
-pub mod learner;
 pub mod random;
 pub mod settings;
+
+pub mod world;
+
+pub mod sensors;
+
+pub mod filter;
+
 pub mod state;
-pub mod world {
-    //! TRUTH.
-    pub mod scene;
-}
-pub mod sensors {
-    //! SENSE.
-    pub mod observation;
-}
-pub mod reward {
-    //! JUDGE.
-    pub mod facts;
-}
+
+pub mod reward;
+
+pub mod learner;
+
+pub mod robot;
+
+pub mod experiment;
+
+pub mod report;
+pub mod store;

@@ -1,2 +1,37 @@
-//! x
-fn main() {}
+//! The `engine` program: arguments to a command, a command to an exit status, an error to one clear text.
+
+mod cli;
+mod commands;
+mod console;
+
+use std::io::IsTerminal;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use cli::{Cli, Command};
+use console::{Console, ConsoleError};
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let mut console = Console::new(cli.command.wants_json());
+    let status = run(&cli.command, &mut console).and_then(|status| console.finish().map(|()| status));
+    match status {
+        Ok(status) => ExitCode::from(status),
+        // The reader of a pipe went away: it has what it wanted.
+        Err(ConsoleError::Closed) => ExitCode::SUCCESS,
+        Err(ConsoleError::Failed(error)) => {
+            console.error(&error, std::io::stderr().is_terminal());
+            ExitCode::from(error.kind.exit_status())
+        }
+    }
+}
+
+fn run(command: &Command, console: &mut Console) -> Result<u8, ConsoleError> {
+    match command {
+        Command::Run(arguments) => commands::run::run(arguments, console),
+        Command::Test(arguments) => commands::test::run(arguments, console),
+        Command::Bench(arguments) => commands::bench::run(arguments, console),
+        Command::Reference(arguments) => commands::reference::run(arguments, console),
+    }
+}

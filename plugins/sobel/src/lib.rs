@@ -5,7 +5,9 @@
 //! * Norm: Euclidean. A pixel is an edge where `gx² + gy² >= threshold²`, with the kernels
 //!   `gx = [-1 0 1; -2 0 2; -1 0 1]` and `gy` its transpose, so a step of 1 grey level has a norm of 4.
 
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
+
+mod kernel;
 
 use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, Plugin};
 
@@ -49,11 +51,7 @@ impl Filter for Sobel {
             return Ok(());
         }
         self.fill_luma(&input)?;
-        let padded = input.width_px() + 2;
-        for (y, out) in output.pixels().chunks_exact_mut(input.width_px()).enumerate() {
-            let row = |index: usize| &self.luma[index * padded..(index + 1) * padded];
-            mark_edges(row(y), row(y + 1), row(y + 2), self.least_square, out);
-        }
+        kernel::mark_edges(&self.luma, input.width_px(), self.least_square, output.pixels());
         Ok(())
     }
 }
@@ -62,41 +60,19 @@ impl Sobel {
     fn fill_luma(&mut self, input: &Frame<'_>) -> Result<(), FilterError> {
         let (width, height, padded) = (input.width_px(), input.height_px(), input.width_px() + 2);
         self.luma.resize(padded * (height + 2), 0);
-        let rows = self.luma.chunks_exact_mut(padded).skip(1).take(height);
-        for (source, row) in input.pixels().chunks_exact(input.stride()).zip(rows) {
-            let inner = &mut row[1..=width];
-            match input.format() {
-                Format::Rgb => luma_of_colour(source, inner),
-                Format::Grey => inner.iter_mut().zip(source).for_each(|(luma, grey)| *luma = i16::from(*grey)),
-                Format::Mask => return Err(FilterError("sobel reads colour or grey frames, not a mask".to_owned())),
-            }
+        let inside = &mut self.luma[padded..padded * (height + 1)];
+        match input.format() {
+            Format::Rgb => kernel::luma_of_colour(input.pixels(), width, inside),
+            Format::Grey => kernel::luma_of_grey(input.pixels(), width, inside),
+            Format::Mask => return Err(FilterError("sobel reads colour or grey frames, not a mask".to_owned())),
+        }
+        for row in inside.chunks_exact_mut(padded) {
             row[0] = row[1];
             row[width + 1] = row[width];
         }
         self.luma.copy_within(padded..2 * padded, 0);
         self.luma.copy_within(height * padded..(height + 1) * padded, (height + 1) * padded);
         Ok(())
-    }
-}
-
-fn luma_of_colour(source: &[u8], luma: &mut [i16]) {
-    for (pixel, luma) in source.chunks_exact(3).zip(luma) {
-        let weighted = u16::from(pixel[0]) * 77 + u16::from(pixel[1]) * 150 + u16::from(pixel[2]) * 29;
-        *luma = (weighted >> 8) as i16;
-    }
-}
-
-fn mark_edges(top: &[i16], middle: &[i16], bottom: &[i16], least_square: i32, out: &mut [u8]) {
-    let width = out.len();
-    // Slices of one known length let the compiler drop the bounds checks and use vectors.
-    let (tl, tc, tr) = (&top[..width], &top[1..=width], &top[2..width + 2]);
-    let (ml, mr) = (&middle[..width], &middle[2..width + 2]);
-    let (bl, bc, br) = (&bottom[..width], &bottom[1..=width], &bottom[2..width + 2]);
-    for x in 0..width {
-        let gx = (tr[x] - tl[x]) + 2 * (mr[x] - ml[x]) + (br[x] - bl[x]);
-        let gy = (bl[x] - tl[x]) + 2 * (bc[x] - tc[x]) + (br[x] - tr[x]);
-        let square = i32::from(gx) * i32::from(gx) + i32::from(gy) * i32::from(gy);
-        out[x] = if square >= least_square { 255 } else { 0 };
     }
 }
 

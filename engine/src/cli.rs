@@ -1,0 +1,142 @@
+//! The command line: names, defaults and help, no logic.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+/// Learns visual robot behaviours from reward scripts: learned, tested and drawn in about a second.
+#[derive(Debug, Parser)]
+#[command(name = "engine", version, propagate_version = true)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Learn a behaviour, test the frozen policy, draw the results
+    Run(RunArguments),
+    /// Test a learned policy again, in the same or another world
+    Test(TestArguments),
+    /// Measure steps per second, and where the time goes
+    Bench(BenchArguments),
+    /// Print the reference page of the script language
+    Reference(ReferenceArguments),
+}
+
+impl Command {
+    pub(crate) fn wants_json(&self) -> bool {
+        match self {
+            Self::Run(arguments) => arguments.json,
+            Self::Test(arguments) => arguments.json,
+            Self::Bench(arguments) => arguments.json,
+            Self::Reference(_) => false,
+        }
+    }
+}
+
+/// Exit status: 0 learned, 1 not good enough, 2 usage, 3 bad input file, 4 a limit stopped it, 6 files and disk, 130
+/// stopped by Ctrl-C (what was learned is kept).
+#[derive(Debug, Args)]
+#[command(after_help = "Exit status: 0 learned; 1 not good enough; 2 usage; 3 bad input file; 4 a limit stopped it; \
+                        6 files and disk; 130 stopped by Ctrl-C, with what was learned kept.")]
+pub(crate) struct RunArguments {
+    /// The behaviour's script, such as scripts/wall.rhai
+    pub(crate) behaviour: PathBuf,
+    /// The first seed
+    #[arg(long, default_value = "1", value_parser = seed, allow_hyphen_values = true)]
+    pub(crate) seed: u64,
+    /// How many seeds to learn, from --seed on
+    #[arg(long, default_value = "1", value_parser = count, allow_hyphen_values = true, value_name = "N")]
+    pub(crate) seeds: u64,
+    /// How many threads to use; without it, one for each core
+    #[arg(long, value_parser = count, allow_hyphen_values = true, value_name = "N")]
+    pub(crate) threads: Option<u64>,
+    /// How many steps to learn; without it, what the script says
+    #[arg(long, value_parser = count, allow_hyphen_values = true, value_name = "N")]
+    pub(crate) steps: Option<u64>,
+    /// Another world: its name, or the path of a world file
+    #[arg(long)]
+    pub(crate) world: Option<String>,
+    /// Change a setting of the script, such as camera.tilt_deg=40; may be given again
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// The folder for the results [default: runs/BEHAVIOUR/SEED]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print the summary as JSON on standard output, and nothing else there
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct TestArguments {
+    /// The folder of a run, such as runs/wall/1
+    pub(crate) run: PathBuf,
+    /// Another world: its name, or the path of a world file; without it, the one that the run learned in
+    #[arg(long)]
+    pub(crate) world: Option<String>,
+    /// The seed of the test; without it, that of the run
+    #[arg(long, value_parser = seed, allow_hyphen_values = true)]
+    pub(crate) seed: Option<u64>,
+    /// How many steps to test; without it, what the script says
+    #[arg(long, value_parser = count, allow_hyphen_values = true, value_name = "N")]
+    pub(crate) steps: Option<u64>,
+    /// Change a setting, such as light or noise: camera.noise=8; may be given again
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// A folder for the figures and pictures of the test; without it, nothing is written
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print the figures as JSON on standard output, and nothing else there
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct BenchArguments {
+    /// The behaviour whose step is measured
+    #[arg(long, default_value = "scripts/wall.rhai")]
+    pub(crate) behaviour: PathBuf,
+    /// Another world: its name, or the path of a world file
+    #[arg(long)]
+    pub(crate) world: Option<String>,
+    /// Change a setting of the script, such as camera.width_px=320; may be given again
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// How many steps each figure is measured over
+    #[arg(long, default_value = "20000", value_parser = count, allow_hyphen_values = true, value_name = "N")]
+    pub(crate) steps: u64,
+    /// Print the figures as JSON on standard output, and nothing else there
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ReferenceArguments {
+    /// Print definitions for editors (.d.rhai) instead of the page
+    #[arg(long)]
+    pub(crate) definitions: bool,
+}
+
+fn seed(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("a seed is a whole number from 0 to {}", u64::MAX))
+}
+
+fn count(text: &str) -> Result<u64, String> {
+    match text.parse() {
+        Ok(count) if (1..=1_000_000_000).contains(&count) => Ok(count),
+        _ => Err("write a whole number from 1 to 1000000000".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+}

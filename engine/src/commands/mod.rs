@@ -1,0 +1,8 @@
+//! One file for each command.
+
+pub(crate) mod bench;
+mod folder;
+pub(crate) mod reference;
+pub(crate) mod run;
+mod stop;
+pub(crate) mod test;

@@ -1,0 +1,152 @@
+//! `engine run`: learn, test the frozen policy, draw.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use engine::diagnostic::Result;
+use engine::experiment::{Learned, Overrides, Plan, Progress, Spread, Summary, TestRun, in_parallel, learn, test};
+use engine::reward::Behaviour;
+
+use super::folder::{RunFolder, SeedResult};
+use super::stop::{INTERRUPTED, on_ctrl_c};
+use crate::cli::RunArguments;
+use crate::console::{Console, ConsoleError};
+
+pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
+    let behaviour = Arc::new(Behaviour::load(&arguments.behaviour)?);
+    let (world, set) = (arguments.world.clone(), arguments.set.clone());
+    let overrides = Overrides { world, steps: arguments.steps, test_steps: None, set };
+    let plan = Plan::new(behaviour, &overrides)?;
+    let seeds: Vec<u64> = (0..arguments.seeds).map(|index| arguments.seed.wrapping_add(index)).collect();
+    let folder = RunFolder::create(&out(arguments, plan.behaviour.name(), &seeds), &plan, arguments.seed)?;
+
+    let stop = on_ctrl_c()?;
+    let threads = arguments.threads.unwrap_or(0) as usize;
+    let results = learn_all(&plan, &seeds, threads, &stop, console)?;
+    folder.write(&plan, &results)?;
+
+    let interrupted = stop.load(Ordering::Relaxed);
+    let good = if let [result] = results.as_slice() {
+        console.json(&result.summary)?;
+        print_one(console, &result.summary)?;
+        result.summary.is_good()
+    } else {
+        let spread = Spread::new(results.iter().map(|result| result.summary.clone()).collect());
+        console.json(&spread)?;
+        print_many(console, &spread)?;
+        2 * spread.seeds.iter().filter(|seed| seed.is_good()).count() > spread.seeds.len()
+    };
+    console.line(&format!("results:   {}", folder.path().display()))?;
+    if interrupted {
+        console.note("stopped by Ctrl-C; what was learned until then is kept");
+        return Ok(INTERRUPTED);
+    }
+    Ok(u8::from(!good))
+}
+
+fn out(arguments: &RunArguments, name: &str, seeds: &[u64]) -> PathBuf {
+    if let Some(out) = &arguments.out {
+        return out.clone();
+    }
+    let folder = match seeds {
+        [first, .., last] => format!("{first}-{last}"),
+        _ => arguments.seed.to_string(),
+    };
+    Path::new("runs").join(name).join(folder)
+}
+
+fn learn_all(
+    plan: &Plan,
+    seeds: &[u64],
+    threads: usize,
+    stop: &AtomicBool,
+    console: &Console,
+) -> Result<Vec<SeedResult>> {
+    let bar = console.bar(plan.settings.run.steps * seeds.len() as u64);
+    let plain = bar.is_hidden() && seeds.len() == 1;
+    let report = |progress: Progress| {
+        bar.inc(engine::experiment::WINDOW_STEPS);
+        bar.set_message(format!("reinforcement of the last 400 steps: {}", progress.reinforcement));
+        if plain {
+            console.note(&format!(
+                "step {}: reinforcement of the last 400 steps {}",
+                progress.steps, progress.reinforcement
+            ));
+        }
+    };
+    let results = in_parallel(seeds, threads, |seed| {
+        let (started, learned, tested) = learn_and_test(plan, seed, stop, &report)?;
+        let summary = Summary::new(plan, &learned, tested.figures.clone(), started.elapsed().as_secs_f64());
+        if bar.is_hidden() && !plain {
+            console.note(&format!("seed {seed}: {}", one_line(&summary)));
+        }
+        Ok(SeedResult { learned, tested, summary })
+    });
+    bar.finish_and_clear();
+    results
+}
+
+fn learn_and_test(
+    plan: &Plan,
+    seed: u64,
+    stop: &AtomicBool,
+    report: &(dyn Fn(Progress) + Sync),
+) -> Result<(Instant, Learned, TestRun)> {
+    let started = Instant::now();
+    let learned = learn(plan, seed, stop, report)?;
+    let tested = test(plan, &learned.policy, seed, stop)?;
+    Ok((started, learned, tested))
+}
+
+fn one_line(summary: &Summary) -> String {
+    let learned = summary.learned_at.map_or("not learned".to_owned(), |step| format!("learned at step {step}"));
+    let laps = summary.test.laps.map_or(String::new(), |laps| format!(", {laps:.1} laps"));
+    format!("{learned}; test: {:.1} failures in 1000 steps{laps}", summary.test.failures_per_1000)
+}
+
+fn print_one(console: &mut Console, summary: &Summary) -> std::result::Result<(), ConsoleError> {
+    let Summary { behaviour, world, seed, steps, test, .. } = summary;
+    console.line(&format!(
+        "behaviour: {behaviour} in {world}, seed {seed}, {} steps per second",
+        summary.steps_per_second
+    ))?;
+    let learned = match summary.learned_at {
+        Some(step) => format!("at step {step} of {steps} (four windows of 400 steps with -1 or better)"),
+        None => format!("not within {steps} steps (no four windows of 400 steps with -1 or better)"),
+    };
+    console.line(&format!("learned:   {learned}"))?;
+    super::test::print_figures(console, test)
+}
+
+fn print_many(console: &mut Console, spread: &Spread) -> std::result::Result<(), ConsoleError> {
+    let count = spread.seeds.len();
+    console.line(&format!("behaviour: {} in {}, {count} seeds", spread.behaviour, spread.world))?;
+    console.line(&format!(
+        "learned:   {} of {count} seeds ({:.0} %)",
+        spread.converged,
+        100.0 * spread.converged as f64 / count as f64
+    ))?;
+    console.line("                        median     worst")?;
+    let step = |step: Option<u64>| step.map_or("never".to_owned(), |step| step.to_string());
+    let (median, worst) = (&spread.median, &spread.worst);
+    let mut row =
+        |name: &str, median: String, worst: String| console.line(&format!("  {name:20}{median:>8}  {worst:>8}"));
+    row("learned at step", step(median.learned_at), step(worst.learned_at))?;
+    row("failures per 1000", format!("{:.1}", median.failures_per_1000), format!("{:.1}", worst.failures_per_1000))?;
+    if let (Some(median), Some(worst)) = (median.laps, worst.laps) {
+        row("laps", format!("{median:.1}"), format!("{worst:.1}"))?;
+    }
+    if let (Some(median), Some(worst)) = (median.prey_distance_m, worst.prey_distance_m) {
+        row("distance to prey, m", format!("{median:.2}"), format!("{worst:.2}"))?;
+    }
+    row("contacts", format!("{:.0}", median.contacts), format!("{:.0}", worst.contacts))?;
+    row("spinning, %", format!("{:.0}", 100.0 * median.spinning), format!("{:.0}", 100.0 * worst.spinning))?;
+    let lost = spread.seeds.iter().filter(|seed| seed.test.does_task == Some(false)).count();
+    if lost > 0 {
+        console
+            .line(&format!("{lost} of {count} seeds avoid punishment but make less than 0.1 m/s along the route"))?;
+    }
+    Ok(())
+}

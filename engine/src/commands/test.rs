@@ -1,0 +1,52 @@
+//! `engine test`: a stored policy again, in the same or another world.
+
+use std::sync::atomic::Ordering;
+
+use engine::experiment::{Overrides, TestFigures, test};
+use engine::store::StoredRun;
+
+use super::folder::TestFolder;
+use super::stop::{INTERRUPTED, on_ctrl_c};
+use crate::cli::TestArguments;
+use crate::console::{Console, ConsoleError};
+
+pub(crate) fn run(arguments: &TestArguments, console: &mut Console) -> Result<u8, ConsoleError> {
+    let StoredRun { plan, seed, policy } = StoredRun::load(&arguments.run)?;
+    let (world, set) = (arguments.world.clone(), arguments.set.clone());
+    let plan = plan.with_changes(&Overrides { world, steps: None, test_steps: arguments.steps, set })?;
+    let stop = on_ctrl_c()?;
+    let tested = test(&plan, &policy, arguments.seed.unwrap_or(seed), &stop)?;
+    if let Some(out) = &arguments.out {
+        TestFolder::create(out)?.write(&plan, &tested)?;
+    }
+    console.json(&tested.figures)?;
+    console.line(&format!("behaviour: {} in {}, learned with seed {seed}", plan.behaviour.name(), plan.layout.name))?;
+    print_figures(console, &tested.figures)?;
+    if stop.load(Ordering::Relaxed) {
+        return Ok(INTERRUPTED);
+    }
+    Ok(u8::from(tested.figures.does_task == Some(false)))
+}
+
+/// The figures of a test for a person, and in words what a reward cannot see.
+pub(crate) fn print_figures(console: &mut Console, test: &TestFigures) -> Result<(), ConsoleError> {
+    console.line(&format!(
+        "test:      {} steps, {} failures ({:.1} per 1000), {} contacts, {:.2} m/s",
+        test.steps, test.failures, test.failures_per_1000, test.contacts, test.mean_speed
+    ))?;
+    if let (Some(laps), Some(net_m)) = (test.laps, test.net_route_m) {
+        console.line(&format!("route:     {laps:.1} laps net ({net_m:.0} m of {:.0} m driven)", test.distance_m))?;
+    }
+    if let Some(distance_m) = test.prey_distance_m {
+        console.line(&format!("prey:      median distance {distance_m:.2} m"))?;
+    }
+    let habits = [("spinning", test.spinning), ("standing", test.standing), ("circling", test.circling)];
+    let habits: Vec<_> = habits.iter().filter(|(_, share)| *share > 0.02).collect();
+    for (habit, share) in habits {
+        console.line(&format!("warning:   {habit} {:.0} % of the time", 100.0 * share))?;
+    }
+    if test.does_task == Some(false) {
+        console.line("warning:   it avoids punishment, but makes less than 0.1 m/s along the route")?;
+    }
+    Ok(())
+}

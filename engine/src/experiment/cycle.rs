@@ -1,0 +1,190 @@
+//! One step of the robot, the order of which is the order of the folders: act, sense, filter, state, judge.
+
+use crate::diagnostic::{Diagnostic, Kind, Result};
+use crate::filter::Chain;
+use crate::geometry::Twist;
+use crate::reward::{Facts, Judge};
+use crate::robot::Robot;
+use crate::sensors::observation::{Image, Observation, Scan};
+use crate::state::Grid;
+
+use super::Plan;
+
+/// What one step led to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Step {
+    /// The step's number, from 0.
+    pub index: u64,
+    /// The state in which the action was chosen.
+    pub state: usize,
+    /// The action.
+    pub action: usize,
+    /// The script's reward.
+    pub reward: f64,
+    /// The state at the end.
+    pub next_state: usize,
+    /// Whether the script asks for recovery: a failure.
+    pub failed: bool,
+    /// Whether the body touched something.
+    pub contact: bool,
+}
+
+/// A robot with what turns its observations into states and rewards. It does not know who chooses the actions.
+pub struct Cycle<R> {
+    robot: R,
+    chain: Chain,
+    grid: Grid,
+    judge: Judge,
+    actions: Vec<Twist>,
+    observation: Observation,
+    state: usize,
+    index: u64,
+    since_recovery: u64,
+}
+
+impl<R: Robot> Cycle<R> {
+    /// Takes the first observation and runs the script's calibration on it.
+    ///
+    /// # Errors
+    /// If the plan's filters, grid or script do not work, or a sensor fails.
+    pub fn new(plan: &Plan, robot: R) -> Result<Self> {
+        let settings = &plan.settings;
+        let observation = Observation {
+            image: Image::new(settings.camera.width_px as usize, settings.camera.height_px as usize),
+            scan: Scan { ranges_m: vec![0.0; settings.laser.beams as usize] },
+            contact: false,
+            fallen: false,
+            odometry: Twist::default(),
+        };
+        let mut cycle = Self {
+            robot,
+            chain: plan.chain()?,
+            grid: plan.grid()?,
+            judge: plan.judge()?,
+            actions: settings.actions.clone(),
+            observation,
+            state: 0,
+            index: 0,
+            since_recovery: 0,
+        };
+        cycle.perceive()?;
+        cycle.fill_facts(0);
+        cycle.judge.calibrate()?;
+        Ok(cycle)
+    }
+
+    /// The present state.
+    #[must_use]
+    pub const fn state(&self) -> usize {
+        self.state
+    }
+
+    /// Carries out an action and judges what came of it.
+    ///
+    /// # Errors
+    /// If a sensor, a filter or the script fails; the message names the step.
+    pub fn step(&mut self, action: usize) -> Result<Step> {
+        let (index, state) = (self.index, self.state);
+        self.robot.act(self.actions[action])?;
+        self.index += 1;
+        self.since_recovery += 1;
+        self.perceive()?;
+        self.fill_facts(action);
+        let verdict = self.judge.judge().map_err(|error| at_step(error, index))?;
+        Ok(Step {
+            index,
+            state,
+            action,
+            reward: verdict.reward,
+            next_state: self.state,
+            failed: verdict.recover,
+            contact: self.observation.contact,
+        })
+    }
+
+    /// Brings the robot back to a safe pose. Not a step: nothing is judged or learned from it.
+    ///
+    /// # Errors
+    /// If there is no safe pose, or a sensor fails.
+    pub fn recover(&mut self) -> Result<()> {
+        self.robot.recover()?;
+        self.judge.recovered();
+        self.since_recovery = 0;
+        self.perceive()
+    }
+
+    /// Sense, filter, state.
+    fn perceive(&mut self) -> Result<()> {
+        self.robot.observe(&mut self.observation)?;
+        let mask = self
+            .chain
+            .apply(&self.observation.image)
+            .map_err(|error| Box::new(Diagnostic::new(Kind::Limit, "E-FILTER", format!("a filter failed: {error}"))))?;
+        self.state = self.grid.encode(mask);
+        Ok(())
+    }
+
+    fn fill_facts(&mut self, action: usize) {
+        let facts = self.judge.facts_mut();
+        let twist = self.actions[action];
+        facts.ranges_m.clone_from(&self.observation.scan.ranges_m);
+        facts.cells.clear();
+        let shares = self.grid.counts().iter().enumerate();
+        facts.cells.extend(shares.map(|(cell, count)| *count as f32 / self.grid.area_px(cell) as f32));
+        facts.grid = self.grid.size();
+        facts.seen = self.grid.occupied().contains(&true);
+        let pixels = self.observation.image.width_px * self.observation.image.height_px;
+        facts.coverage = f64::from(self.grid.counts().iter().sum::<u32>()) / pixels as f64;
+        facts.state = self.state;
+        facts.action = action;
+        facts.action_linear = twist.linear_m_per_s;
+        facts.action_angular = twist.angular_rad_per_s;
+        facts.contact = self.observation.contact;
+        facts.fallen = self.observation.fallen;
+        facts.linear = self.observation.odometry.linear_m_per_s;
+        facts.angular = self.observation.odometry.angular_rad_per_s;
+        facts.step = self.index;
+        facts.since_recovery = self.since_recovery;
+    }
+
+    /// By rule: what each added in the last step, if it fired.
+    #[must_use]
+    pub fn fired(&self) -> &[Option<f64>] {
+        self.judge.fired()
+    }
+
+    /// What the script was told in the last step.
+    #[must_use]
+    pub fn facts(&self) -> &Facts {
+        self.judge.facts()
+    }
+
+    /// The robot behind the door.
+    #[must_use]
+    pub fn robot(&self) -> &R {
+        &self.robot
+    }
+
+    /// The last observation.
+    #[must_use]
+    pub fn observation(&self) -> &Observation {
+        &self.observation
+    }
+
+    /// The last mask.
+    #[must_use]
+    pub fn mask(&self) -> &[u8] {
+        self.chain.mask()
+    }
+
+    /// The grid, with its last counts.
+    #[must_use]
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+}
+
+fn at_step(mut error: Box<Diagnostic>, index: u64) -> Box<Diagnostic> {
+    error.message = format!("{} (in step {index})", error.message);
+    error
+}

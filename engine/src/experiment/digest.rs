@@ -1,0 +1,48 @@
+//! A hash over everything that a run decided, to compare runs bit for bit.
+
+use super::Step;
+use crate::geometry::Pose;
+use crate::learner::QTable;
+use sha2::{Digest, Sha256};
+
+/// SHA-256 over every step (state, action, reward, failure, true pose) and the learned table.
+#[derive(Debug, Clone, Default)]
+pub(super) struct StateHash {
+    hasher: Sha256,
+}
+
+impl StateHash {
+    pub(super) fn step(&mut self, step: &Step, pose: Pose) {
+        let mut record = [0_u8; 48];
+        let fields = [
+            (step.state as u64).to_le_bytes(),
+            (step.action as u64 | u64::from(step.failed) << 32).to_le_bytes(),
+            step.reward.to_le_bytes(),
+            pose.x_m.to_le_bytes(),
+            pose.y_m.to_le_bytes(),
+            pose.yaw_rad.to_le_bytes(),
+        ];
+        for (bytes, field) in record.chunks_exact_mut(8).zip(fields) {
+            bytes.copy_from_slice(&field);
+        }
+        self.hasher.update(record);
+    }
+
+    /// The hash as 64 hexadecimal digits.
+    pub(super) fn finish(mut self, table: &QTable) -> String {
+        for value in table.values() {
+            self.hasher.update(value.to_le_bytes());
+        }
+        hex(&self.hasher.finalize())
+    }
+}
+
+/// Bytes as lower-case hexadecimal digits.
+pub(super) fn hex(bytes: &[u8]) -> String {
+    use std::fmt::Write;
+    bytes.iter().fold(String::with_capacity(bytes.len() * 2), |mut text, byte| {
+        // Writing to a String cannot fail.
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
+}

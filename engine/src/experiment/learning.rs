@@ -1,0 +1,90 @@
+//! Learning: the whole method on one screen.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::digest::StateHash;
+use super::trail::{Recorder, Trail};
+use super::{Cycle, Plan, Tally, WINDOW_STEPS};
+use crate::diagnostic::Result;
+use crate::learner::{Learner, Policy, Transition};
+use crate::random::{Random, Stream};
+use crate::robot::SimulatedRobot;
+
+/// How far a seed has come, told at the end of every window.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress {
+    /// Whose progress.
+    pub seed: u64,
+    /// Steps done.
+    pub steps: u64,
+    /// Reinforcement of the last 400 steps.
+    pub reinforcement: f64,
+}
+
+/// What a seed learned.
+#[derive(Debug, Clone)]
+pub struct Learned {
+    /// The seed.
+    pub seed: u64,
+    /// Steps done; fewer than planned if it was stopped.
+    pub steps: u64,
+    /// What was counted.
+    pub tally: Tally,
+    /// What was learned.
+    pub policy: Policy,
+    /// The path of the first 400 steps.
+    pub early: Trail,
+    /// Hash over every step and the table, 64 hexadecimal digits.
+    pub state_hash: String,
+}
+
+/// Learns a plan under a seed, until its steps are done or `stop` is set.
+///
+/// # Errors
+/// If a sensor, a filter or the script fails.
+pub fn learn(plan: &Plan, seed: u64, stop: &AtomicBool, report: &(dyn Fn(Progress) + Sync)) -> Result<Learned> {
+    let settings = &plan.settings;
+    let robot = SimulatedRobot::new(&plan.layout, settings, seed)?;
+    let mut cycle = Cycle::new(plan, robot)?;
+    let random = Random::new(seed, Stream::Learner);
+    let mut learner = Learner::new(&settings.learner, cycle.grid().states(), settings.actions.len(), random);
+    let mut tally = Tally::new(plan.behaviour.rules().len(), settings.run.steps);
+    let mut early = Recorder::new(WINDOW_STEPS, cycle.robot().world());
+    let mut hash = StateHash::default();
+    let mut steps = 0;
+    while steps < settings.run.steps {
+        let action = learner.choose(cycle.state());
+        let step = cycle.step(action)?;
+        learner.learn(&Transition {
+            state: step.state,
+            action: step.action,
+            reward: step.reward,
+            next_state: step.next_state,
+            terminal: step.failed && settings.learner.failure_is_terminal,
+        });
+        steps += 1;
+        hash.step(&step, cycle.robot().world().body().pose);
+        early.follow(cycle.robot().world(), step.failed);
+        if step.failed {
+            learner.forget();
+            cycle.recover()?;
+            early.jump(cycle.robot().world());
+        }
+        if tally.count(&step, cycle.fired()) {
+            let reinforcement = tally.windows.last().map_or(0.0, |window| window.reinforcement);
+            report(Progress { seed, steps, reinforcement });
+            if stop.load(Ordering::Relaxed) {
+                break;
+            }
+        }
+    }
+    learner.forget();
+    Ok(Learned {
+        seed,
+        steps,
+        tally,
+        policy: learner.policy(),
+        early: early.finish(),
+        state_hash: hash.finish(learner.table()),
+    })
+}

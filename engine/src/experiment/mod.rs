@@ -1,0 +1,24 @@
+//! A run as a pure function of its plan and its seed: learning, then a test of the frozen policy.
+//!
+//! Nothing here prints, reads a clock or writes a file.
+
+mod cycle;
+mod digest;
+mod learning;
+mod plan;
+mod seeds;
+mod summary;
+mod tally;
+mod testing;
+mod trail;
+mod truth;
+
+pub use cycle::{Cycle, Step};
+pub use learning::{Learned, Progress, learn};
+pub use plan::{Overrides, Plan};
+pub use seeds::in_parallel;
+pub use summary::{RuleTotal, Spread, Summary, TestFigures, learned_at};
+pub use tally::{Tally, WINDOW_STEPS, Window};
+pub use testing::{TestRun, test};
+pub use trail::Trail;
+pub use truth::{Spells, Truth};

@@ -1,0 +1,229 @@
+//! From what was written to what can run: the behaviour's settings, the command line's changes, the world, all checked.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::diagnostic::{Diagnostic, Kind, Result, nearest_name, printable};
+use crate::filter::Chain;
+use crate::reward::{Behaviour, Judge};
+use crate::robot::SimulatedRobot;
+use crate::settings::{SETTINGS, Settings, Value, apply};
+use crate::state::Grid;
+use crate::world::Layout;
+
+/// What the command line changes.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Overrides {
+    /// Another world: a name, or the path of a file.
+    pub world: Option<String>,
+    /// Another number of learning steps.
+    pub steps: Option<u64>,
+    /// Another number of test steps.
+    pub test_steps: Option<u64>,
+    /// `KEY=VALUE` pairs, such as `camera.tilt_deg=40` or `filter.sobel.threshold=80`.
+    pub set: Vec<String>,
+}
+
+/// A behaviour that is ready to be learned, under any seed.
+#[derive(Clone)]
+pub struct Plan {
+    /// The script.
+    pub behaviour: Arc<Behaviour>,
+    /// Its settings, with the command line's changes.
+    pub settings: Settings,
+    /// The world.
+    pub layout: Arc<Layout>,
+}
+
+impl Plan {
+    /// Resolves a behaviour, and tries everything that can fail before learning starts.
+    ///
+    /// # Errors
+    /// If a setting, a filter, the grid, the world or the script is wrong.
+    pub fn new(behaviour: Arc<Behaviour>, overrides: &Overrides) -> Result<Self> {
+        let settings = changed(behaviour.settings(), overrides)?;
+        let place = if overrides.world.is_some() { None } else { behaviour.place_of("world") };
+        let path = find_world(&behaviour, &settings.world, place)?;
+        Self::with_layout(behaviour, settings, Arc::new(Layout::load(&path)?))
+    }
+
+    /// The same plan with changes; it keeps its world unless another is named.
+    ///
+    /// # Errors
+    /// As [`Plan::new`].
+    pub fn with_changes(self, overrides: &Overrides) -> Result<Self> {
+        let settings = changed(&self.settings, overrides)?;
+        let layout = match &overrides.world {
+            Some(world) => Arc::new(Layout::load(&find_world(&self.behaviour, world, None)?)?),
+            None => self.layout,
+        };
+        Self::with_layout(self.behaviour, settings, layout)
+    }
+
+    /// A plan from parts that were resolved before.
+    ///
+    /// # Errors
+    /// As [`Plan::new`].
+    pub fn with_layout(behaviour: Arc<Behaviour>, settings: Settings, layout: Arc<Layout>) -> Result<Self> {
+        let plan = Self { behaviour, settings, layout };
+        plan.chain()?;
+        plan.grid()?;
+        plan.judge()?;
+        SimulatedRobot::new(&plan.layout, &plan.settings, 0)?;
+        Ok(plan)
+    }
+
+    /// A fresh filter chain.
+    ///
+    /// # Errors
+    /// If the chain cannot be built; the error points at the script's line.
+    pub fn chain(&self) -> Result<Chain> {
+        let camera = &self.settings.camera;
+        Chain::new(&self.settings.filters, camera.width_px as usize, camera.height_px as usize).map_err(|error| {
+            let place = format!("filter:{}", error.stage);
+            self.point(Diagnostic::new(Kind::Input, "E-FILTER-SETTING", error.message), &place, "here", error.help)
+        })
+    }
+
+    /// A fresh grid.
+    ///
+    /// # Errors
+    /// If it would have too many states, or cells without pixels.
+    pub fn grid(&self) -> Result<Grid> {
+        let camera = &self.settings.camera;
+        Grid::new(&self.settings.grid, camera.width_px as usize, camera.height_px as usize).map_err(|error| {
+            let help = Some("use fewer rows or columns".to_owned());
+            self.point(Diagnostic::new(Kind::Input, "E-GRID", error.0), "grid", "here", help)
+        })
+    }
+
+    /// A fresh judge.
+    ///
+    /// # Errors
+    /// If a rule does not fit the settings, such as a beam that the laser does not have.
+    pub fn judge(&self) -> Result<Judge> {
+        self.behaviour.judge(self.settings.run.period_s, self.settings.laser.beams as usize)
+    }
+
+    fn point(&self, error: Diagnostic, place: &str, label: &str, help: Option<String>) -> Box<Diagnostic> {
+        let error = match self.behaviour.place_of(place) {
+            Some(span) => error.at(self.behaviour.source(), span, label),
+            None => error,
+        };
+        Box::new(match help {
+            Some(help) => error.help(help),
+            None => error,
+        })
+    }
+}
+
+fn changed(settings: &Settings, overrides: &Overrides) -> Result<Settings> {
+    let mut settings = settings.clone();
+    for pair in &overrides.set {
+        set(&mut settings, pair)?;
+    }
+    if let Some(steps) = overrides.steps {
+        settings.run.steps = steps;
+    }
+    if let Some(steps) = overrides.test_steps {
+        settings.run.test_steps = steps;
+    }
+    if let Some(world) = &overrides.world {
+        settings.world.clone_from(world);
+    }
+    Ok(settings)
+}
+
+/// Carries out one `--set KEY=VALUE`.
+fn set(settings: &mut Settings, pair: &str) -> Result<()> {
+    let wrong = |message: String, help: String| Diagnostic::new(Kind::Usage, "E-SET", message).help(help).into();
+    let Some((name, text)) = pair.split_once('=') else {
+        let message = format!("'{}' is not KEY=VALUE", printable(pair));
+        return wrong(message, "write for example: --set camera.tilt_deg=40".to_owned());
+    };
+    let Some((group, key)) = name.trim().split_once('.') else {
+        let keys: Vec<_> = SETTINGS.iter().map(|row| row.name()).collect();
+        let suffix = format!(".{}", name.trim());
+        let near = keys.iter().find(|key| key.ends_with(&suffix)).map(String::as_str);
+        let near = near.or_else(|| nearest_name(name, keys.iter().map(String::as_str))).unwrap_or("camera.tilt_deg");
+        return wrong(format!("there is no setting '{}'", printable(name)), format!("did you mean '{near}'?"));
+    };
+    let value = parse(text.trim());
+    if group == "filter" {
+        return set_filter(settings, key, &value);
+    }
+    apply(settings, group, key, &value).map_err(|error| {
+        let message = format!("{} ({})", error.message, error.found);
+        let diagnostic = Diagnostic::new(Kind::Usage, "E-SET", message);
+        Box::new(match error.help {
+            Some(help) => diagnostic.help(help),
+            None => diagnostic,
+        })
+    })
+}
+
+fn set_filter(settings: &mut Settings, key: &str, value: &Value) -> Result<()> {
+    let names: Vec<_> = settings.filters.iter().map(|filter| filter.name.clone()).collect();
+    let stage = key.split_once('.').and_then(|(name, parameter)| {
+        Some((settings.filters.iter_mut().find(|filter| filter.name == name)?, parameter))
+    });
+    let (Some((filter, parameter)), Value::Number(number)) = (stage, value) else {
+        let message = format!("'filter.{}' is not a number of one of the behaviour's filters", printable(key));
+        let help = format!("write filter.NAME.PARAMETER=NUMBER; the filters are: {}", names.join(", "));
+        return Diagnostic::new(Kind::Usage, "E-SET", message).help(help).into();
+    };
+    filter.parameters.retain(|(name, _)| name != parameter);
+    filter.parameters.push((parameter.to_owned(), *number));
+    Ok(())
+}
+
+fn parse(text: &str) -> Value {
+    match (text, text.parse::<f64>()) {
+        ("true" | "false", _) => Value::Flag(text == "true"),
+        (_, Ok(number)) => Value::Number(number),
+        _ => Value::Text(text.trim_matches('"').to_owned()),
+    }
+}
+
+/// The file of a world: a path as it is, a name in the folders where worlds are kept.
+fn find_world(behaviour: &Behaviour, name: &str, place: Option<std::ops::Range<usize>>) -> Result<PathBuf> {
+    let script = &behaviour.source().path;
+    let folder = script.parent().unwrap_or(Path::new(""));
+    let is_path = name.contains(['/', '\\']) || name.ends_with(".toml");
+    let tried: Vec<PathBuf> = if is_path {
+        // A path in a script is meant from the script, a path on the command line from where the user stands.
+        vec![if place.is_some() { folder.join(name) } else { PathBuf::from(name) }]
+    } else {
+        let file = format!("{name}.toml");
+        ["../worlds", "worlds", ""]
+            .iter()
+            .map(|part| folder.join(part).join(&file))
+            .chain([Path::new("worlds").join(&file)])
+            .collect()
+    };
+    if let Some(found) = tried.iter().find(|path| path.exists()) {
+        return Ok(found.clone());
+    }
+    let known = known_worlds(&tried);
+    let help = match nearest_name(name, known.iter().map(String::as_str)) {
+        Some(near) => format!("did you mean \"{near}\"?"),
+        None if known.is_empty() => "write the path of a world file, such as worlds/room.toml".to_owned(),
+        None => format!("there are: {}", known.join(", ")),
+    };
+    let message = format!("there is no world '{}'", printable(name));
+    let error = Diagnostic::new(Kind::Input, "E-WORLD-FILE", message).help(help);
+    match place {
+        Some(span) => error.at(behaviour.source(), span, "not found").into(),
+        None => error.into(),
+    }
+}
+
+fn known_worlds(tried: &[PathBuf]) -> Vec<String> {
+    let folders = tried.iter().filter_map(|path| path.parent()).filter(|folder| folder.ends_with("worlds"));
+    let files = folders.filter_map(|folder| std::fs::read_dir(folder).ok()).flatten().flatten();
+    let mut names: Vec<String> =
+        files.filter_map(|entry| entry.file_name().to_str()?.strip_suffix(".toml").map(str::to_owned)).collect();
+    names.sort();
+    names.dedup();
+    names
+}

@@ -1,0 +1,244 @@
+//! The figures of a run, as `summary.json` holds them.
+
+use serde::{Deserialize, Serialize};
+
+use super::truth::Truth;
+use super::{Learned, Plan, Tally, WINDOW_STEPS};
+
+/// Reinforcement of a window from which it counts as learned.
+const GOOD_WINDOW: f64 = -1.0;
+/// How many such windows in a row are asked for.
+const GOOD_WINDOWS: usize = 4;
+/// A policy does its task if it makes this much of 0.2 m/s net along the route.
+const TASK_SPEED_M_PER_S: f64 = 0.5 * 0.2;
+
+/// One seed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// Name of the behaviour.
+    pub behaviour: String,
+    /// Name of the world that it was learned in.
+    pub world: String,
+    /// The seed.
+    pub seed: u64,
+    /// Steps of learning that were done.
+    pub steps: u64,
+    /// Steps of learning and testing for each second of wall clock.
+    pub steps_per_second: f64,
+    /// The first step from which four windows of 400 steps each have a reinforcement of -1 or better.
+    pub learned_at: Option<u64>,
+    /// Sum of the rewards of each window of 400 steps.
+    pub reinforcement_per_400: Vec<f64>,
+    /// What each rule did while learning.
+    pub rules: Vec<RuleTotal>,
+    /// How many states were visited.
+    pub states_seen: usize,
+    /// The frozen policy's test.
+    pub test: TestFigures,
+    /// SHA-256 over every step of learning and the learned table.
+    pub state_hash: String,
+    /// Whether it was stopped before its steps were done.
+    pub interrupted: bool,
+}
+
+/// What one rule did.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RuleTotal {
+    /// The rule's name.
+    pub name: String,
+    /// How often it fired.
+    pub fired: u64,
+    /// Sum of what it added.
+    pub total: f64,
+}
+
+/// The frozen policy, judged by the script and by the truth.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TestFigures {
+    /// Steps of the test.
+    pub steps: u64,
+    /// Steps in which a rule asked for recovery.
+    pub failures: u64,
+    /// The same for 1,000 steps.
+    pub failures_per_1000: f64,
+    /// Sum of the rewards for 1,000 steps.
+    pub reinforcement_per_1000: f64,
+    /// Length of the path, metres.
+    pub distance_m: f64,
+    /// Signed progress along the world's lap route, metres; null without one.
+    pub net_route_m: Option<f64>,
+    /// The same in laps.
+    pub laps: Option<f64>,
+    /// Steps in which the body touched something.
+    pub contacts: u64,
+    /// Path length over time, m/s.
+    pub mean_speed: f64,
+    /// Share of spells of 20 s with a full turn on a radius below 0.3 m.
+    pub spinning: f64,
+    /// Share of spells with less than 0.2 m of path.
+    pub standing: f64,
+    /// Share of spells that went round in a circle.
+    pub circling: f64,
+    /// Share of spells with backward progress along the route; null without one.
+    pub backwards: Option<f64>,
+    /// Median distance between the robot and the prey, metres, centre to centre; null without one.
+    pub prey_distance_m: Option<f64>,
+    /// Whether the robot does more than avoid punishment: half of 0.2 m/s net along the route; null without a route.
+    pub does_task: Option<bool>,
+}
+
+impl TestFigures {
+    pub(super) fn new(steps: u64, period_s: f64, lap_m: Option<f64>, tally: &Tally, truth: &Truth) -> Self {
+        let seconds = (steps as f64 * period_s).max(f64::MIN_POSITIVE);
+        let per_1000 = |count: f64| count * 1000.0 / steps.max(1) as f64;
+        let share = |count: u64| count as f64 / truth.spells.all.max(1) as f64;
+        let net_route_m = truth.net_m();
+        Self {
+            steps,
+            failures: tally.failures,
+            failures_per_1000: per_1000(tally.failures as f64),
+            reinforcement_per_1000: per_1000(tally.curve().iter().sum()),
+            distance_m: truth.distance_m,
+            net_route_m,
+            laps: net_route_m.zip(lap_m).map(|(net_m, lap_m)| net_m / lap_m),
+            contacts: tally.contacts,
+            mean_speed: truth.distance_m / seconds,
+            spinning: share(truth.spells.spinning),
+            standing: share(truth.spells.standing),
+            circling: share(truth.spells.circling),
+            backwards: net_route_m.map(|_| share(truth.spells.backwards)),
+            prey_distance_m: median(&truth.prey_m.iter().map(|distance| f64::from(*distance)).collect::<Vec<_>>()),
+            does_task: net_route_m.map(|net_m| net_m / seconds >= TASK_SPEED_M_PER_S),
+        }
+    }
+}
+
+impl Summary {
+    /// The figures of one seed.
+    #[must_use]
+    pub fn new(plan: &Plan, learned: &Learned, test: TestFigures, seconds: f64) -> Self {
+        let curve = learned.tally.curve();
+        let rules = plan.behaviour.rules().iter().enumerate().map(|(index, rule)| RuleTotal {
+            name: rule.name.clone(),
+            fired: learned.tally.fired[index],
+            total: learned.tally.windows.iter().map(|window| window.by_rule[index]).sum(),
+        });
+        Self {
+            behaviour: plan.behaviour.name().to_owned(),
+            world: plan.layout.name.clone(),
+            seed: learned.seed,
+            steps: learned.steps,
+            steps_per_second: ((learned.steps + test.steps) as f64 / seconds.max(1e-9)).round(),
+            learned_at: learned_at(&curve),
+            reinforcement_per_400: curve,
+            rules: rules.collect(),
+            states_seen: learned.policy.rows().iter().flatten().count(),
+            interrupted: learned.steps < plan.settings.run.steps || test.steps < plan.settings.run.test_steps,
+            state_hash: learned.state_hash.clone(),
+            test,
+        }
+    }
+
+    /// Whether it was learned and, in a world with a route, gets along it.
+    #[must_use]
+    pub fn is_good(&self) -> bool {
+        self.learned_at.is_some() && self.test.does_task != Some(false)
+    }
+}
+
+/// Many seeds of one behaviour.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Spread {
+    /// Name of the behaviour.
+    pub behaviour: String,
+    /// Name of the world.
+    pub world: String,
+    /// How many seeds learned.
+    pub converged: usize,
+    /// The median seed's figures, each taken on its own.
+    pub median: Figures,
+    /// The worst seed's figures, each taken on its own.
+    pub worst: Figures,
+    /// Every seed.
+    pub seeds: Vec<Summary>,
+}
+
+/// The figures that a spread is told by.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Figures {
+    /// Null stands for never, and never is later than any step.
+    pub learned_at: Option<u64>,
+    /// Failures in 1,000 steps of the test.
+    pub failures_per_1000: f64,
+    /// Laps of the test; null without a route.
+    pub laps: Option<f64>,
+    /// Median distance to the prey, metres; null without one.
+    pub prey_distance_m: Option<f64>,
+    /// Contacts in the test.
+    pub contacts: f64,
+    /// Share of spells spinning.
+    pub spinning: f64,
+}
+
+impl Spread {
+    /// The spread of at least one seed.
+    #[must_use]
+    pub fn new(seeds: Vec<Summary>) -> Self {
+        let figures = |of: &dyn Fn(&mut Vec<f64>, bool) -> f64| {
+            let pick = |worst_is_high: bool, value: &dyn Fn(&Summary) -> f64| {
+                of(&mut seeds.iter().map(value).collect(), worst_is_high)
+            };
+            let learned_at = pick(true, &|seed| seed.learned_at.map_or(f64::INFINITY, |step| step as f64));
+            let laps = pick(false, &|seed| seed.test.laps.unwrap_or(f64::NAN));
+            let prey = pick(true, &|seed| seed.test.prey_distance_m.unwrap_or(f64::NAN));
+            Figures {
+                learned_at: learned_at.is_finite().then_some(learned_at as u64),
+                failures_per_1000: pick(true, &|seed| seed.test.failures_per_1000),
+                laps: (!laps.is_nan()).then_some(laps),
+                prey_distance_m: (!prey.is_nan()).then_some(prey),
+                contacts: pick(true, &|seed| seed.test.contacts as f64),
+                spinning: pick(true, &|seed| seed.test.spinning),
+            }
+        };
+        let sorted = |values: &mut Vec<f64>| values.sort_by(f64::total_cmp);
+        let median = figures(&|values, _| {
+            sorted(values);
+            values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+        });
+        let worst = figures(&|values, worst_is_high| {
+            sorted(values);
+            let worst = if worst_is_high { values.last() } else { values.first() };
+            worst.copied().unwrap_or(f64::NAN)
+        });
+        let (behaviour, world) =
+            seeds.first().map_or_else(Default::default, |seed| (seed.behaviour.clone(), seed.world.clone()));
+        let converged = seeds.iter().filter(|seed| seed.learned_at.is_some()).count();
+        Self { behaviour, world, converged, median, worst, seeds }
+    }
+}
+
+/// The first step from which four windows in a row have a reinforcement of -1 or better; only whole windows count.
+#[must_use]
+pub fn learned_at(curve: &[f64]) -> Option<u64> {
+    let good = |windows: &[f64]| windows.iter().all(|window| *window >= GOOD_WINDOW);
+    curve.windows(GOOD_WINDOWS).position(good).map(|index| index as u64 * WINDOW_STEPS)
+}
+
+/// The upper median; `None` of nothing.
+fn median(values: &[f64]) -> Option<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_is_learned_at_the_start_of_four_good_windows() {
+        assert_eq!(learned_at(&[-12.0, -5.0, -1.0, 0.0, -1.0, 0.0, -3.0]), Some(800));
+        assert_eq!(learned_at(&[-12.0, -1.0, 0.0, -2.0, 0.0, -1.0]), None);
+        assert_eq!(learned_at(&[0.0, 0.0, 0.0]), None);
+    }
+}

@@ -1,0 +1,96 @@
+//! The test: the frozen policy at the lowest temperature, judged by the truth as well as by the script.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::summary::TestFigures;
+use super::trail::{Recorder, Trail};
+use super::truth::Truth;
+use super::{Cycle, Plan, Tally, WINDOW_STEPS};
+use crate::diagnostic::Result;
+use crate::learner::Policy;
+use crate::random::{Random, Stream};
+use crate::robot::SimulatedRobot;
+use crate::sensors::observation::Image;
+
+/// Steps of the test whose path is kept for drawing.
+const TRAIL_STEPS: u64 = 2 * WINDOW_STEPS;
+/// The step after which one frame is kept for drawing.
+const SNAPSHOT_STEP: u64 = 60;
+/// Added to the seed, so that the noise of the test is not the noise of learning again.
+const TEST_SEED_OFFSET: u64 = 0x5eed_0000_0000_0000;
+
+/// One frame with what the filter and the grid made of it.
+#[derive(Debug, Clone)]
+pub struct Snapshot {
+    /// The camera image.
+    pub image: Image,
+    /// The mask.
+    pub mask: Vec<u8>,
+    /// Share of foreground pixels of each cell.
+    pub shares: Vec<f32>,
+    /// Whether each cell is occupied by itself.
+    pub occupied: Vec<bool>,
+    /// The state.
+    pub state: usize,
+}
+
+/// What a test found.
+#[derive(Debug, Clone)]
+pub struct TestRun {
+    /// The figures.
+    pub figures: TestFigures,
+    /// The path of the first 800 steps.
+    pub trail: Trail,
+    /// One frame of it.
+    pub snapshot: Snapshot,
+}
+
+/// Tests a frozen policy for the plan's `run.test_steps`, or until `stop` is set.
+///
+/// # Errors
+/// If a sensor, a filter or the script fails.
+pub fn test(plan: &Plan, policy: &Policy, seed: u64, stop: &AtomicBool) -> Result<TestRun> {
+    let settings = &plan.settings;
+    let world_seed = seed.wrapping_add(TEST_SEED_OFFSET);
+    let mut cycle = Cycle::new(plan, SimulatedRobot::new(&plan.layout, settings, world_seed)?)?;
+    let mut softmax = policy.softmax(&settings.learner);
+    let mut random = Random::new(seed, Stream::Test);
+    let mut tally = Tally::new(plan.behaviour.rules().len(), settings.run.test_steps);
+    let mut truth = Truth::new(cycle.robot().world(), settings.run.period_s, settings.run.test_steps);
+    let mut trail = Recorder::new(TRAIL_STEPS, cycle.robot().world());
+    let mut snapshot = None;
+    let mut steps = 0;
+    while steps < settings.run.test_steps {
+        let action = policy.choose(cycle.state(), &mut softmax, &mut random);
+        let step = cycle.step(action)?;
+        steps += 1;
+        truth.follow(cycle.robot().world());
+        trail.follow(cycle.robot().world(), step.failed);
+        if steps <= SNAPSHOT_STEP {
+            snapshot = (steps == SNAPSHOT_STEP || steps == settings.run.test_steps).then(|| take(&cycle));
+        }
+        if step.failed {
+            cycle.recover()?;
+            truth.jump(cycle.robot().world());
+            trail.jump(cycle.robot().world());
+        }
+        if tally.count(&step, cycle.fired()) && stop.load(Ordering::Relaxed) {
+            break;
+        }
+    }
+    let lap_m = plan.layout.lap.map(|lap| plan.layout.routes[lap].length_m());
+    let figures = TestFigures::new(steps, settings.run.period_s, lap_m, &tally, &truth);
+    Ok(TestRun { figures, trail: trail.finish(), snapshot: snapshot.unwrap_or_else(|| take(&cycle)) })
+}
+
+fn take(cycle: &Cycle<SimulatedRobot>) -> Snapshot {
+    let grid = cycle.grid();
+    let counts = grid.counts().iter().enumerate();
+    Snapshot {
+        image: cycle.observation().image.clone(),
+        mask: cycle.mask().to_vec(),
+        shares: counts.map(|(cell, count)| *count as f32 / grid.area_px(cell) as f32).collect(),
+        occupied: grid.occupied().to_vec(),
+        state: cycle.state(),
+    }
+}

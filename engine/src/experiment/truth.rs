@@ -1,0 +1,126 @@
+//! What a reward cannot see: where the robot really is, and whether it gets anywhere.
+
+use std::f64::consts::TAU;
+
+use crate::geometry::{Point2, Pose, wrap_angle};
+use crate::world::{Progress, World};
+
+/// Seconds over which spinning, standing and circling are judged.
+const SPELL_S: f64 = 20.0;
+/// Turning tighter than this radius on average is spinning, metres.
+const SPIN_RADIUS_M: f64 = 0.3;
+/// A spell with less path than this is standing, metres.
+const STANDING_M: f64 = 0.2;
+
+/// Follows the true pose through a test.
+#[derive(Debug, Clone)]
+pub struct Truth {
+    progress: Option<Progress>,
+    last: Pose,
+    /// Length of the path, metres.
+    pub distance_m: f64,
+    spell: Spell,
+    spell_steps: u64,
+    /// Whole spells, and of these spinning, standing, circling, and going backwards along the route.
+    pub spells: Spells,
+    /// Distance to the prey after each step, metres; empty without a prey.
+    pub prey_m: Vec<f32>,
+}
+
+/// Counts of spells of 20 s.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Spells {
+    /// All whole spells.
+    pub all: u64,
+    /// Full turn or more on a radius below 0.3 m.
+    pub spinning: u64,
+    /// Less than 0.2 m of path and no full turn.
+    pub standing: u64,
+    /// Full turn or more on a wider radius, ending within a quarter of the path of where it began.
+    pub circling: u64,
+    /// Net progress along the route below zero.
+    pub backwards: u64,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Spell {
+    steps: u64,
+    path_m: f64,
+    turn_rad: f64,
+    from: Pose,
+    net_from_m: f64,
+}
+
+impl Truth {
+    /// Begins at the robot's present pose.
+    #[must_use]
+    pub fn new(world: &World, period_s: f64, steps: u64) -> Self {
+        let pose = world.body().pose;
+        let layout = world.layout();
+        let progress = layout.lap.map(|lap| Progress::new(&layout.routes[lap], Point2::new(pose.x_m, pose.y_m)));
+        let prey_m = Vec::with_capacity(if world.prey().is_some() { steps as usize } else { 0 });
+        let spell_steps = (SPELL_S / period_s).round().max(1.0) as u64;
+        let spell = Spell::new(pose, 0.0);
+        Self { progress, last: pose, distance_m: 0.0, spell, spell_steps, spells: Spells::default(), prey_m }
+    }
+
+    /// Follows one step.
+    pub fn follow(&mut self, world: &World) {
+        let pose = world.body().pose;
+        let moved = pose.distance_m(self.last);
+        self.distance_m += moved;
+        self.spell.path_m += moved;
+        self.spell.turn_rad += wrap_angle(pose.yaw_rad - self.last.yaw_rad);
+        self.spell.steps += 1;
+        self.last = pose;
+        let layout = world.layout();
+        if let (Some(progress), Some(lap)) = (&mut self.progress, layout.lap) {
+            progress.update(&layout.routes[lap], Point2::new(pose.x_m, pose.y_m));
+        }
+        if let Some(prey) = world.prey() {
+            self.prey_m.push(pose.distance_m(prey) as f32);
+        }
+        if self.spell.steps == self.spell_steps {
+            self.end_spell();
+        }
+    }
+
+    /// The robot was put elsewhere: no progress is counted for that, and the spell begins anew.
+    pub fn jump(&mut self, world: &World) {
+        let pose = world.body().pose;
+        let layout = world.layout();
+        if let (Some(progress), Some(lap)) = (&mut self.progress, layout.lap) {
+            progress.jump(&layout.routes[lap], Point2::new(pose.x_m, pose.y_m));
+        }
+        self.last = pose;
+        self.spell = Spell::new(pose, self.net_m().unwrap_or(0.0));
+    }
+
+    /// Signed progress along the lap route, metres; `None` in a world without one.
+    #[must_use]
+    pub fn net_m(&self) -> Option<f64> {
+        self.progress.as_ref().map(Progress::net_m)
+    }
+
+    fn end_spell(&mut self) {
+        let net_m = self.net_m();
+        let Spell { path_m, turn_rad, from, net_from_m, .. } = self.spell;
+        let (turned, away_m) = (turn_rad.abs() >= TAU, self.last.distance_m(from));
+        self.spells.all += 1;
+        if turned && path_m < SPIN_RADIUS_M * turn_rad.abs() {
+            self.spells.spinning += 1;
+        } else if turned && away_m < 0.25 * path_m {
+            self.spells.circling += 1;
+        } else if path_m < STANDING_M {
+            self.spells.standing += 1;
+        }
+        self.spells.backwards += u64::from(net_m.is_some_and(|net_m| net_m < net_from_m));
+        self.spell = Spell::new(self.last, net_m.unwrap_or(0.0));
+    }
+}
+
+impl Spell {
+    fn new(from: Pose, net_from_m: f64) -> Self {
+        Self { steps: 0, path_m: 0.0, turn_rad: 0.0, from, net_from_m }
+    }
+}

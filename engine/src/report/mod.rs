@@ -1,0 +1,67 @@
+//! What a run leaves for people: pictures, tables, and files that are never half written.
+//!
+//! Every picture is laid out once on a list of marks and then written twice: as SVG text and as PNG bytes.
+
+use std::convert::Infallible;
+
+use plotters::drawing::DrawingAreaErrorKind;
+
+use crate::diagnostic::{Diagnostic, Kind, Result};
+
+mod atomic;
+mod axes;
+mod canvas;
+mod certainty;
+mod csv;
+mod curve;
+mod frame;
+mod glyphs;
+mod plan;
+mod policy;
+mod raster;
+mod route;
+mod sheet;
+mod trajectory;
+mod vector;
+
+pub use atomic::write_atomic;
+pub use certainty::certainty_grid;
+pub use csv::{CurveRow, curve_csv};
+pub use curve::{CurveData, learning_curve};
+pub use frame::{FrameData, frame};
+pub use policy::{PolicyData, PolicyState, policy};
+pub use trajectory::{TrajectoryData, trajectories};
+
+/// One picture in two forms.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Picture {
+    /// A whole SVG document.
+    pub svg: String,
+    /// A whole PNG file of the same picture.
+    pub png: Vec<u8>,
+}
+
+impl Picture {
+    /// Writes `stem.svg` and `stem.png` into an existing folder; a reader never sees half a file.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub fn write(&self, folder: &std::path::Path, stem: &str) -> Result<()> {
+        write_atomic(&folder.join(format!("{stem}.svg")), self.svg.as_bytes())?;
+        write_atomic(&folder.join(format!("{stem}.png")), &self.png)
+    }
+}
+
+/// A picture that could not be made, and why.
+fn failed(reason: &str) -> Box<Diagnostic> {
+    Box::new(Diagnostic::new(Kind::Disk, "E-PICTURE", format!("cannot draw the picture: {reason}")))
+}
+
+impl From<DrawingAreaErrorKind<Infallible>> for Box<Diagnostic> {
+    fn from(error: DrawingAreaErrorKind<Infallible>) -> Self {
+        failed(&error.to_string())
+    }
+}
+
+#[cfg(test)]
+mod tests;

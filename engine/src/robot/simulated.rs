@@ -1,0 +1,74 @@
+//! The robot in the simulator: world, camera and laser behind the door.
+
+use std::sync::Arc;
+
+use super::{Recovery, Robot};
+use crate::diagnostic::Result;
+use crate::geometry::Twist;
+use crate::sensors::observation::Observation;
+use crate::sensors::{Camera, CameraWatch, Laser, self_test};
+use crate::settings::Settings;
+use crate::world::{Layout, Motion, World};
+
+/// A Pioneer 2-AT with a camera and a laser, in a world.
+pub struct SimulatedRobot {
+    world: World,
+    camera: Camera,
+    laser: Laser,
+    watch: CameraWatch,
+    recovery: Recovery,
+    motion: Motion,
+    moved: bool,
+}
+
+impl SimulatedRobot {
+    /// A robot at a safe pose of the world, its camera tested.
+    ///
+    /// # Errors
+    /// If no pose is safe, or the camera shows nothing from there.
+    pub fn new(layout: &Arc<Layout>, settings: &Settings, seed: u64) -> Result<Self> {
+        let mut world = World::new(Arc::clone(layout), &settings.robot, settings.run.period_s, seed);
+        let mut camera = Camera::new(&layout.scene, &settings.camera, seed);
+        let laser = Laser::new(&layout.scene, &settings.laser, seed);
+        let mut recovery = Recovery::new(&settings.recovery, seed);
+        let start = recovery.pose(&world)?;
+        world.place(start);
+        self_test(&mut camera, &world.body().world_from_robot(), world.moving())?;
+        let (watch, motion) = (CameraWatch::new(), Motion::default());
+        Ok(Self { world, camera, laser, watch, recovery, motion, moved: false })
+    }
+
+    /// The truth, for tests and reports only.
+    #[must_use]
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+}
+
+impl Robot for SimulatedRobot {
+    fn observe(&mut self, observation: &mut Observation) -> Result<()> {
+        let world_from_robot = self.world.body().world_from_robot();
+        self.camera.render(&world_from_robot, self.world.moving(), &mut observation.image);
+        self.watch.check(&observation.image, self.moved)?;
+        self.laser.scan(&world_from_robot, self.world.moving(), &mut observation.scan);
+        observation.contact = self.motion.contact;
+        observation.fallen = self.motion.fallen;
+        observation.odometry = self.motion.odometry;
+        Ok(())
+    }
+
+    fn act(&mut self, twist: Twist) -> Result<()> {
+        let before = self.world.body().pose;
+        self.motion = self.world.advance(twist);
+        self.moved = self.world.body().pose != before;
+        Ok(())
+    }
+
+    fn recover(&mut self) -> Result<()> {
+        let pose = self.recovery.pose(&self.world)?;
+        self.world.place(pose);
+        self.motion = Motion::default();
+        self.moved = true;
+        Ok(())
+    }
+}

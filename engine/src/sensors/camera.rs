@@ -1,0 +1,253 @@
+//! The camera: draws what stands before it, visible faces first and colours afterwards.
+
+use super::drawing::Drawing;
+use super::lens::Fisheye;
+use super::noise::PixelNoise;
+use super::observation::Image;
+use super::painting::{Drawn, Painter};
+use super::spans::Spans;
+use super::surface::Surfaces;
+use super::texture::{BATCH, Looks};
+use super::view::{Affine, Pinhole, View};
+use crate::geometry::{Isometry3, Vector3};
+use crate::settings::CameraSettings;
+use crate::world::scene::{Scene, Solid};
+use std::sync::Arc;
+
+/// What is seen where there is nothing.
+const SKY: [u8; 3] = [186, 198, 210];
+/// Numbers of the three things that are always there, among drawn faces and looks alike.
+const SKY_FACE: u32 = 0;
+const FLOOR_FACE: u32 = 1;
+const OUTSIDE_LENS: u32 = 2;
+
+/// A colour camera fixed to the robot, with a pinhole or an equidistant fisheye lens.
+///
+/// Cylinders are drawn as prisms with 32 sides. A camera inside a solid, or below the floor, sees through it.
+#[derive(Debug, Clone)]
+pub struct Camera {
+    scene: Arc<Scene>,
+    width_px: usize,
+    height_px: usize,
+    pinhole: Pinhole,
+    fisheye: Option<Fisheye>,
+    noise: Option<PixelNoise>,
+    frame: u64,
+    /// In the robot's axes: the lens's place, and right, down and forward.
+    mount: [Vector3; 4],
+    surfaces: Surfaces,
+    moving: Surfaces,
+    looks: Looks,
+    standing_looks: (usize, usize),
+    spans: Spans,
+    seen: Vec<usize>,
+    drawn: Vec<Drawn>,
+    nearness: Vec<Affine>,
+}
+
+impl Camera {
+    /// A camera in a scene. `seed` decides the noise.
+    #[must_use]
+    pub fn new(scene: &Arc<Scene>, settings: &CameraSettings, seed: u64) -> Self {
+        let (width_px, height_px) = (settings.width_px as usize, settings.height_px as usize);
+        let field_of_view_rad = settings.field_of_view_deg.to_radians();
+        let fisheye = (settings.lens == "fisheye").then(|| Fisheye::new(width_px, height_px, field_of_view_rad));
+        let focal_px = width_px as f64 * 0.5 / libm::tan(field_of_view_rad * 0.5);
+        let pinhole = fisheye.as_ref().map_or(Pinhole { width_px, height_px, focal_px }, |lens| lens.pinhole);
+        let (sin, cos) = libm::sincos(settings.tilt_deg.to_radians());
+        let mount = [
+            Vector3::new(settings.forward_m, 0.0, settings.height_m),
+            Vector3::new(0.0, -1.0, 0.0),
+            Vector3::new(-sin, 0.0, -cos),
+            Vector3::new(cos, 0.0, -sin),
+        ];
+        let parts = scene.parts();
+        let surfaces = Surfaces::new(&parts.solids);
+        let mut looks = Looks::default();
+        looks.push_plain(SKY);
+        looks.push(&parts.materials[parts.floor], &parts.light, &Vector3::z());
+        looks.push_plain([0; 3]);
+        for face in surfaces.faces() {
+            looks.push(&parts.materials[face.material], &parts.light, &face.normal);
+        }
+        Self {
+            scene: Arc::clone(scene),
+            width_px,
+            height_px,
+            pinhole,
+            fisheye,
+            noise: PixelNoise::new(settings.noise, seed),
+            frame: 0,
+            mount,
+            surfaces,
+            moving: Surfaces::default(),
+            standing_looks: looks.length(),
+            looks,
+            spans: Spans::new(pinhole.width_px, pinhole.height_px),
+            seen: Vec::new(),
+            drawn: Vec::new(),
+            nearness: Vec::new(),
+        }
+    }
+
+    /// How many frames were rendered: with the seed, the address of the next frame's noise.
+    #[must_use]
+    pub fn frames(&self) -> u64 {
+        self.frame
+    }
+
+    /// Continues as if `frames` frames had been rendered.
+    pub fn set_frames(&mut self, frames: u64) {
+        self.frame = frames;
+    }
+
+    /// Renders into `image`, which gets the camera's size. `world_from_robot` is the robot's base on the ground, x
+    /// forward; `moving` are the solids that do not belong to the scene, where they stand now.
+    pub fn render(&mut self, world_from_robot: &Isometry3, moving: &[Solid], image: &mut Image) {
+        if (image.width_px, image.height_px) != (self.width_px, self.height_px)
+            || image.pixels.len() != self.width_px * self.height_px * 3
+        {
+            *image = Image::new(self.width_px, self.height_px);
+        }
+        let view = self.view(world_from_robot);
+        self.place_movers(moving);
+        self.find_visible(&view);
+        self.shade(image);
+        if let Some(noise) = &self.noise {
+            noise.add(self.frame, &mut image.pixels, self.width_px * 3);
+        }
+        self.frame += 1;
+    }
+
+    fn view(&self, world_from_robot: &Isometry3) -> View {
+        let turn = world_from_robot.rotation.to_rotation_matrix();
+        let [place, right, down, forward] = self.mount.map(|vector| turn * vector);
+        let position = world_from_robot.translation.vector + place;
+        View { pinhole: self.pinhole, position, right, down, forward }
+    }
+
+    fn place_movers(&mut self, moving: &[Solid]) {
+        let parts = self.scene.parts();
+        self.moving.clear();
+        self.looks.truncate(self.standing_looks);
+        for solid in moving {
+            self.moving.push(solid);
+        }
+        for face in self.moving.faces() {
+            self.looks.push(&parts.materials[face.material], &parts.light, &face.normal);
+        }
+    }
+
+    /// Fills the spans with everything in sight.
+    fn find_visible(&mut self, view: &View) {
+        self.spans.clear();
+        self.drawn.clear();
+        self.nearness.clear();
+        for look in [SKY_FACE, FLOOR_FACE, OUTSIDE_LENS] {
+            self.drawn.push(Drawn { look: look as usize, coordinates: [Affine::default(); 2] });
+            self.nearness.push(Affine::default());
+        }
+        if let Some(nearness) = view.nearness(&Vector3::z(), 0.0) {
+            let origin = Vector3::zeros();
+            self.nearness[FLOOR_FACE as usize] = nearness;
+            self.drawn[FLOOR_FACE as usize].coordinates =
+                [Vector3::x(), Vector3::y()].map(|axis| view.coordinate(&axis, &origin, nearness));
+        }
+        let frustum = view.frustum();
+        self.seen.clear();
+        let seen = &mut self.seen;
+        self.scene.visit(|min, max| frustum.meets(&min, &max), |solid| seen.push(solid));
+        // The later of two solids in one plane is seen: paint lies over paint in the order of the world file.
+        seen.sort_unstable();
+        let first_look = OUTSIDE_LENS as usize + 1;
+        let mut drawing = Drawing {
+            view,
+            looks: &self.looks,
+            spans: &mut self.spans,
+            drawn: &mut self.drawn,
+            nearness: &mut self.nearness,
+        };
+        for &solid in &self.seen {
+            for face in self.surfaces.of_solid(solid) {
+                drawing.face(&self.surfaces, &self.surfaces.faces()[face], first_look + face);
+            }
+        }
+        for (index, face) in self.moving.faces().iter().enumerate() {
+            drawing.face(&self.moving, face, self.standing_looks.0 + index);
+        }
+    }
+
+    fn shade(&self, image: &mut Image) {
+        let mut painter = Painter::new(&mut image.pixels, &self.looks, &self.drawn, &self.nearness);
+        match &self.fisheye {
+            None => self.shade_rows(&mut painter),
+            Some(lens) => self.shade_through(lens, &mut painter),
+        }
+        painter.flush(self.width_px * self.height_px);
+    }
+
+    fn shade_rows(&self, painter: &mut Painter) {
+        for row in 0..self.height_px {
+            let base = row * self.width_px;
+            let floor = self.floor(row);
+            let background = |painter: &mut Painter, from: usize, to: usize| {
+                let (first, last) = (floor.0.clamp(from, to), floor.1.clamp(from, to));
+                painter.stretch(SKY_FACE, base, row, (from, first));
+                painter.stretch(FLOOR_FACE, base, row, (first, last));
+                painter.stretch(SKY_FACE, base, row, (last, to));
+            };
+            let mut from = 0;
+            for run in self.spans.row(row) {
+                let (start, end) = (usize::from(run.start), usize::from(run.end));
+                background(painter, from, start);
+                painter.stretch(run.face, base, row, (start, end));
+                from = end;
+            }
+            background(painter, from, self.width_px);
+        }
+    }
+
+    /// The pixels of a row below the horizon.
+    fn floor(&self, row: usize) -> (usize, usize) {
+        let nearness = &self.nearness[FLOOR_FACE as usize];
+        let width = self.pinhole.width_px;
+        let at = |pixel: f64| nearness.at(pixel, row as f64 + 0.5);
+        let (left, right) = (at(0.5), at(width as f64 - 0.5));
+        if left > 0.0 && right > 0.0 {
+            return (0, width);
+        }
+        if left <= 0.0 && right <= 0.0 {
+            return (0, 0);
+        }
+        let crossing = (-at(0.0) / nearness.0[0] + 0.5).clamp(0.0, width as f64) as usize;
+        if left > 0.0 { (0, crossing) } else { (crossing, width) }
+    }
+
+    fn shade_through(&self, lens: &Fisheye, painter: &mut Painter) {
+        let mut first = 0;
+        for (xs, ys) in lens.xs.chunks(self.width_px).zip(lens.ys.chunks(self.width_px)) {
+            let mut column = 0;
+            while column < xs.len() {
+                let face = self.seen_at(xs[column], ys[column]);
+                let most = xs.len().min(column + BATCH);
+                let same = (column + 1..most).find(|&next| self.seen_at(xs[next], ys[next]) != face).unwrap_or(most);
+                painter.scattered(face, first + column, &xs[column..same], &ys[column..same]);
+                column = same;
+            }
+            first += xs.len();
+        }
+    }
+
+    /// The face at a place of the pinhole view.
+    fn seen_at(&self, x: f32, y: f32) -> u32 {
+        if x.is_nan() {
+            return OUTSIDE_LENS;
+        }
+        let (column, row) = (x as u16, y as usize);
+        match self.spans.row(row).iter().find(|run| column < run.end) {
+            Some(run) if run.start <= column => run.face,
+            _ if self.nearness[FLOOR_FACE as usize].at(f64::from(x), f64::from(y)) > 0.0 => FLOOR_FACE,
+            _ => SKY_FACE,
+        }
+    }
+}

@@ -1,0 +1,308 @@
+//! The laser: cuts solids with the plane of the scan and measures along each beam.
+
+use super::noise;
+use super::observation::Scan;
+use super::surface::{Face, Surfaces};
+use super::view::HalfSpace;
+use crate::geometry::{Isometry3, Vector3};
+use crate::random::{NORMAL_RUN, normal_table};
+use crate::settings::LaserSettings;
+use crate::world::scene::{Scene, Shape, Solid};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// Address of the laser's noise within a scan; no image has such a row, so the camera's noise is another.
+const NOISE_ROW: u64 = u64::MAX;
+
+/// A scanning laser fixed to the robot: beams over 180 degrees, beam 0 to the right, anticlockwise.
+///
+/// It sees solids whose material returns light, movers, and the floor; not paint. It looks through solids from inside.
+#[derive(Debug, Clone)]
+pub struct Laser {
+    scene: Arc<Scene>,
+    seed: u64,
+    scans: u64,
+    min_range_m: f64,
+    max_range_m: f64,
+    noise_m: f32,
+    /// In the robot's axes: the lens's place, and the front beam, the leftmost beam, and the normal of the scan.
+    mount: [Vector3; 4],
+    surfaces: Surfaces,
+    moving: Surfaces,
+    seen: Vec<usize>,
+    beams: Beams,
+}
+
+/// What each beam has met so far.
+#[derive(Debug, Clone)]
+struct Beams {
+    /// Directions in the plane of the scan: ahead and to the left.
+    ahead: Vec<f64>,
+    left: Vec<f64>,
+    ranges_m: Vec<f64>,
+}
+
+/// The plane of the scan at its place in the world.
+struct Plane {
+    position: Vector3,
+    ahead: Vector3,
+    left: Vector3,
+    normal: Vector3,
+}
+
+impl Laser {
+    /// A laser in a scene. `seed` decides the noise.
+    #[must_use]
+    pub fn new(scene: &Arc<Scene>, settings: &LaserSettings, seed: u64) -> Self {
+        let count = settings.beams as usize;
+        let angle = |beam: usize| PI * (beam as f64 / (count.max(2) - 1) as f64 - 0.5);
+        let (sin, cos) = libm::sincos(settings.tilt_deg.to_radians());
+        Self {
+            scene: Arc::clone(scene),
+            seed,
+            scans: 0,
+            min_range_m: settings.min_range_m,
+            max_range_m: settings.max_range_m,
+            noise_m: settings.noise_m as f32,
+            mount: [
+                Vector3::new(settings.forward_m, 0.0, settings.height_m),
+                Vector3::new(cos, 0.0, -sin),
+                Vector3::y(),
+                Vector3::new(sin, 0.0, cos),
+            ],
+            surfaces: Surfaces::new(&scene.parts().solids),
+            moving: Surfaces::default(),
+            seen: Vec::new(),
+            beams: Beams {
+                ahead: (0..count).map(|beam| libm::cos(angle(beam))).collect(),
+                left: (0..count).map(|beam| libm::sin(angle(beam))).collect(),
+                ranges_m: vec![0.0; count],
+            },
+        }
+    }
+
+    /// How many scans were taken: with the seed, the address of the next scan's noise.
+    #[must_use]
+    pub fn scans(&self) -> u64 {
+        self.scans
+    }
+
+    /// Continues as if `scans` scans had been taken.
+    pub fn set_scans(&mut self, scans: u64) {
+        self.scans = scans;
+    }
+
+    /// Measures into `scan`, which gets one range for each beam. `world_from_robot` is the robot's base on the ground, x
+    /// forward; `moving` are the solids that do not belong to the scene, where they stand now.
+    pub fn scan(&mut self, world_from_robot: &Isometry3, moving: &[Solid], scan: &mut Scan) {
+        let turn = world_from_robot.rotation.to_rotation_matrix();
+        let [place, ahead, left, normal] = self.mount.map(|vector| turn * vector);
+        let plane = Plane { position: world_from_robot.translation.vector + place, ahead, left, normal };
+        self.beams.start(&plane, self.max_range_m);
+        self.find_near(&plane);
+        let parts = self.scene.parts();
+        for &index in &self.seen {
+            let solid = &parts.solids[index];
+            if solid.collides && parts.materials[solid.material].laser {
+                self.beams.meet(&plane, &self.surfaces, index, solid);
+            }
+        }
+        self.moving.clear();
+        for (index, solid) in moving.iter().enumerate() {
+            self.moving.push(solid);
+            if solid.collides && parts.materials[solid.material].laser {
+                self.beams.meet(&plane, &self.moving, index, solid);
+            }
+        }
+        self.measure(scan);
+        self.scans += 1;
+    }
+
+    /// Lists the solids that the scan may reach.
+    fn find_near(&mut self, plane: &Plane) {
+        let (position, reach) = (plane.position, self.max_range_m);
+        let level = plane.normal.dot(&position);
+        let mut spaces = [HalfSpace::new(&plane.ahead, plane.ahead.dot(&position)); 9];
+        spaces[1] = HalfSpace::new(&plane.normal, level);
+        spaces[2] = HalfSpace::new(&-plane.normal, -level);
+        for (axis, pair) in [Vector3::x(), Vector3::y(), Vector3::z()].iter().zip(spaces[3..].chunks_exact_mut(2)) {
+            pair[0] = HalfSpace::new(axis, axis.dot(&position) - reach);
+            pair[1] = HalfSpace::new(&-axis, -axis.dot(&position) - reach);
+        }
+        self.seen.clear();
+        let seen = &mut self.seen;
+        let keep = |min, max| spaces.iter().all(|space| space.meets(&min, &max));
+        self.scene.visit(keep, |solid| seen.push(solid));
+    }
+
+    /// Turns true ranges into measured ones.
+    fn measure(&self, scan: &mut Scan) {
+        let (min_m, max_m) = (self.min_range_m as f32, self.max_range_m as f32);
+        scan.ranges_m.resize(self.beams.ranges_m.len(), max_m);
+        let start = noise::start(self.seed, self.scans, NOISE_ROW);
+        let draws = &normal_table()[start..start + NORMAL_RUN];
+        for ((range, truth), draw) in scan.ranges_m.iter_mut().zip(&self.beams.ranges_m).zip(draws) {
+            let measured = (*truth as f32 + self.noise_m * draw).max(min_m).min(max_m);
+            // Where nothing is seen there is nothing to be noisy about.
+            *range = if *truth >= self.max_range_m { max_m } else { measured };
+        }
+    }
+}
+
+impl Plane {
+    /// A point as seen from the laser: ahead, to the left, and above the plane.
+    fn local(&self, point: &Vector3) -> [f64; 3] {
+        let from = point - self.position;
+        [self.ahead.dot(&from), self.left.dot(&from), self.normal.dot(&from)]
+    }
+}
+
+impl Beams {
+    /// Forgets all but the floor.
+    fn start(&mut self, plane: &Plane, max_range_m: f64) {
+        let height = plane.position.z;
+        let (fall_ahead, fall_left) = (-plane.ahead.z, -plane.left.z);
+        if height <= 0.0 || (fall_ahead.abs() < 1e-9 && fall_left.abs() < 1e-9) {
+            self.ranges_m.fill(max_range_m);
+            return;
+        }
+        for ((range, ahead), left) in self.ranges_m.iter_mut().zip(&self.ahead).zip(&self.left) {
+            let fall = ahead * fall_ahead + left * fall_left;
+            let floor = height / fall;
+            *range = if fall > 1e-12 && floor < max_range_m { floor } else { max_range_m };
+        }
+    }
+
+    /// Shortens the beams that meet a solid.
+    fn meet(&mut self, plane: &Plane, surfaces: &Surfaces, index: usize, solid: &Solid) {
+        if let Shape::Cylinder { radius_m, half_height_m } = solid.shape {
+            self.meet_cylinder(plane, solid, radius_m, half_height_m);
+            return;
+        }
+        for face in &surfaces.faces()[surfaces.of_solid(index)] {
+            if face.normal.dot(&plane.position) > face.offset_m {
+                self.meet_face(plane, surfaces, face);
+            }
+        }
+    }
+
+    /// A convex face meets the plane of the scan in one stretch of a line.
+    fn meet_face(&mut self, plane: &Plane, surfaces: &Surfaces, face: &Face) {
+        let vertices = surfaces.vertices(face);
+        let mut ends = [[0.0; 2]; 2];
+        let mut found = 0;
+        let mut from = plane.local(&vertices[vertices.len() - 1]);
+        for vertex in vertices {
+            let to = plane.local(vertex);
+            if (from[2] < 0.0) != (to[2] < 0.0) && found < 2 {
+                // From the lower end, whichever way round: neighbours that share the edge get the same point.
+                let (low, high) = if from[2] < 0.0 { (from, to) } else { (to, from) };
+                let share = low[2] / (low[2] - high[2]);
+                ends[found] = [low[0] + (high[0] - low[0]) * share, low[1] + (high[1] - low[1]) * share];
+                found += 1;
+            }
+            from = to;
+        }
+        if found == 2 {
+            self.meet_line(ends[0], ends[1]);
+        }
+    }
+
+    /// A stretch of a line in the plane of the scan, its ends ahead and to the left, metres.
+    fn meet_line(&mut self, from: [f64; 2], to: [f64; 2]) {
+        let (mut right, mut left) = if cross(from, to) > 0.0 { (from, to) } else { (to, from) };
+        let turn = cross(right, left);
+        // The end that lies behind the laser moves to where the line passes beside it.
+        let beside = |front: [f64; 2], back: [f64; 2]| {
+            [0.0, front[1] + (back[1] - front[1]) * (front[0] / (front[0] - back[0]))]
+        };
+        let along = [left[0] - right[0], left[1] - right[1]];
+        match (right[0] < 0.0, left[0] < 0.0) {
+            (true, true) => return,
+            (true, false) => right = beside(left, right),
+            (false, true) => left = beside(right, left),
+            (false, false) => {}
+        }
+        let (first, last) = (self.first_beam(right, |side| side > 0.0), self.first_beam(left, |side| side >= 0.0));
+        if first >= last || turn < 1e-12 {
+            return;
+        }
+        let directions = self.ahead[first..last].iter().zip(&self.left[first..last]);
+        for (range, (ahead, beside)) in self.ranges_m[first..last].iter_mut().zip(directions) {
+            let met = turn / (ahead * along[1] - beside * along[0]);
+            *range = if met < *range && met > 0.0 { met } else { *range };
+        }
+    }
+
+    /// The first beam for which `before` does not hold; it gets how far the point lies to the left of the beam.
+    fn first_beam(&self, point: [f64; 2], before: impl Fn(f64) -> bool) -> usize {
+        let (mut low, mut high) = (0, self.ahead.len());
+        while low < high {
+            let middle = usize::midpoint(low, high);
+            if before(cross([self.ahead[middle], self.left[middle]], point)) {
+                low = middle + 1;
+            } else {
+                high = middle;
+            }
+        }
+        low
+    }
+
+    /// The round side by its quadratic equation and the two caps as planes.
+    fn meet_cylinder(&mut self, plane: &Plane, solid: &Solid, radius: f64, half_height: f64) {
+        let centre = plane.local(&solid.centre.coords);
+        let reach = (radius * radius + half_height * half_height).sqrt();
+        let (first, last) = self.beams_towards([centre[0], centre[1]], reach);
+        let from = plane.position - solid.centre.coords;
+        let outside = from.x * from.x + from.y * from.y - radius * radius;
+        for beam in first..last {
+            let direction = plane.ahead * self.ahead[beam] + plane.left * self.left[beam];
+            let mut met = f64::INFINITY;
+            let square = direction.x * direction.x + direction.y * direction.y;
+            let half = direction.x * from.x + direction.y * from.y;
+            let root = half * half - square * outside;
+            if outside > 0.0 && root >= 0.0 && half < 0.0 {
+                // Half and root have the same sign here, so nothing cancels.
+                let side = outside / (-half + root.sqrt());
+                if (from.z + side * direction.z).abs() <= half_height {
+                    met = side;
+                }
+            }
+            if from.z.abs() > half_height && from.z * direction.z < 0.0 {
+                let cap = (from.z.abs() - half_height) / direction.z.abs();
+                let (x, y) = (from.x + cap * direction.x, from.y + cap * direction.y);
+                if x * x + y * y <= radius * radius {
+                    met = met.min(cap);
+                }
+            }
+            self.ranges_m[beam] = self.ranges_m[beam].min(met);
+        }
+    }
+
+    /// The beams that may pass within `reach` of a point in the plane; too many rather than too few.
+    fn beams_towards(&self, [ahead, left]: [f64; 2], reach: f64) -> (usize, usize) {
+        let square = ahead * ahead + left * left - reach * reach;
+        if ahead < -reach {
+            return (0, 0);
+        }
+        if square <= 0.0 {
+            return (0, self.ahead.len());
+        }
+        // The points where the tangents touch, times the distance's square over the tangent's length.
+        let tangent = square.sqrt();
+        let right_end = [ahead * tangent + left * reach, left * tangent - ahead * reach];
+        let left_end = [ahead * tangent - left * reach, left * tangent + ahead * reach];
+        let behind = |end: [f64; 2], beam: usize| if end[0] < 0.0 { Some(beam) } else { None };
+        let count = self.ahead.len();
+        let first = behind(right_end, if right_end[1] < 0.0 { 0 } else { count });
+        let last = behind(left_end, if left_end[1] < 0.0 { 0 } else { count });
+        let first = first.unwrap_or_else(|| self.first_beam(right_end, |side| side > 0.0).saturating_sub(1));
+        let last = last.unwrap_or_else(|| (self.first_beam(left_end, |side| side >= 0.0) + 1).min(count));
+        (first, last)
+    }
+}
+
+/// Positive if `b` lies to the left of `a`.
+fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}

@@ -1,0 +1,25 @@
+//! What the robot senses: the camera's image and the laser's ranges, drawn from the true world.
+//!
+//! Both sensors work from the flat faces of solids (`surface`). The camera finds which face is seen in which run of
+//! each row (`view`, `drawing`, `spans`), then colours the runs (`texture`, `painting`).
+
+pub mod observation;
+
+mod camera;
+mod drawing;
+mod laser;
+mod lens;
+mod noise;
+mod painting;
+mod spans;
+mod surface;
+mod texture;
+mod view;
+mod watch;
+
+#[cfg(test)]
+mod tests;
+
+pub use camera::Camera;
+pub use laser::Laser;
+pub use watch::{CameraWatch, self_test};

@@ -1,0 +1,6 @@
+//! Both sensors against exact rays and hand-computed values.
+
+mod camera;
+mod laser;
+mod oracle;
+mod repeat;

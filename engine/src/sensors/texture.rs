@@ -1,0 +1,235 @@
+//! How a lit surface looks: its colours, and which of them a place on it has.
+
+use crate::geometry::Vector3;
+use crate::world::scene::{Light, Material, Texture};
+use std::sync::LazyLock;
+
+/// Pixels that are textured at once.
+pub(super) const BATCH: usize = 32;
+/// Pixels in a prepared stretch of plain colour.
+const PATTERN_PX: usize = 16;
+/// Lattice points of the noise texture along each axis; then it repeats.
+const LATTICE: usize = 128;
+
+/// How the places of a surface choose among its colours.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Choice {
+    Plain,
+    Checker,
+    Stripes,
+    /// The amplitude, which is the middle colour's index.
+    Noise(f32),
+}
+
+/// The finished colours of one face.
+#[derive(Debug, Clone)]
+pub(super) struct Look {
+    /// One stretch of the plain colour.
+    pub(super) pattern: [u8; PATTERN_PX * 3],
+    choice: Choice,
+    per_m: f32,
+    /// First colour of this look in the palette.
+    palette_start: usize,
+}
+
+/// Looks and their colours, four bytes each so that a colour is one word.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Looks {
+    looks: Vec<Look>,
+    palette: Vec<[u8; 4]>,
+}
+
+impl Looks {
+    /// The look with this index.
+    pub(super) fn get(&self, index: usize) -> &Look {
+        &self.looks[index]
+    }
+
+    /// Colours of a look.
+    pub(super) fn palette(&self, look: &Look) -> &[[u8; 4]] {
+        &self.palette[look.palette_start..]
+    }
+
+    /// How many looks and colours there are.
+    pub(super) fn length(&self) -> (usize, usize) {
+        (self.looks.len(), self.palette.len())
+    }
+
+    /// Forgets all but the first looks and colours.
+    pub(super) fn truncate(&mut self, (looks, colours): (usize, usize)) {
+        self.looks.truncate(looks);
+        self.palette.truncate(colours);
+    }
+
+    /// Adds one plain colour.
+    pub(super) fn push_plain(&mut self, colour: [u8; 3]) {
+        let mut pattern = [0; PATTERN_PX * 3];
+        for pixel in pattern.chunks_exact_mut(3) {
+            pixel.copy_from_slice(&colour);
+        }
+        let palette_start = self.palette.len();
+        self.looks.push(Look { pattern, choice: Choice::Plain, per_m: 0.0, palette_start });
+    }
+
+    /// Adds the look of a material on a surface with the unit normal `normal`.
+    pub(super) fn push(&mut self, material: &Material, light: &Light, normal: &Vector3) {
+        let brightness = light.on(normal);
+        let lit = material.colour.map(|channel| (f64::from(channel) * brightness).round().clamp(0.0, 255.0));
+        let lighter = |by: f64| lit.map(|channel| (channel + by).round().clamp(0.0, 255.0) as u8);
+        self.push_plain(lighter(0.0));
+        let (choice, amplitude, scale_m) = match material.texture {
+            Texture::Plain => return,
+            Texture::Checker { amplitude, scale_m } => (Choice::Checker, amplitude, scale_m),
+            Texture::Stripes { amplitude, scale_m } => (Choice::Stripes, amplitude, scale_m),
+            Texture::Noise { amplitude, scale_m } => {
+                let amplitude = amplitude.round().clamp(0.0, 127.0);
+                (Choice::Noise(amplitude as f32), amplitude, scale_m)
+            }
+        };
+        if let Some(look) = self.looks.last_mut() {
+            (look.choice, look.per_m) = (choice, (1.0 / scale_m) as f32);
+        }
+        let word = |by: f64| {
+            let [red, green, blue] = lighter(by);
+            [red, green, blue, 0]
+        };
+        if let Choice::Noise(amplitude) = choice {
+            let most = amplitude as i32;
+            self.palette.extend((-most..=most).map(|by| word(f64::from(by))));
+        } else {
+            self.palette.extend([word(amplitude), word(-amplitude)]);
+        }
+    }
+}
+
+/// Adding 1.5 * 2^23 rounds a small number to a whole one, which then stands in the low bits.
+const TO_WHOLE: f32 = 12_582_912.0;
+
+/// The whole number below `value`, as bits and as a number. Only its low bits mean something far from the origin.
+fn floor(value: f32) -> (u32, f32) {
+    let shifted = (value - 0.5) + TO_WHOLE;
+    (shifted.to_bits(), shifted - TO_WHOLE)
+}
+
+impl Look {
+    /// Whether one colour is all there is.
+    pub(super) fn is_plain(&self) -> bool {
+        self.choice == Choice::Plain
+    }
+
+    /// The colour of each place: its index in this look's palette. Places in metres along the surface's two axes.
+    pub(super) fn choose(&self, along: &[f32; BATCH], across: &[f32; BATCH], indices: &mut [u8; BATCH]) {
+        match self.choice {
+            Choice::Plain => *indices = [0; BATCH],
+            Choice::Checker => {
+                for ((index, along), across) in indices.iter_mut().zip(along).zip(across) {
+                    *index = ((floor(along * self.per_m).0 ^ floor(across * self.per_m).0) & 1) as u8;
+                }
+            }
+            Choice::Stripes => {
+                for (index, across) in indices.iter_mut().zip(across) {
+                    *index = (floor(across * self.per_m).0 & 1) as u8;
+                }
+            }
+            Choice::Noise(amplitude) => self.noise(amplitude, along, across, indices),
+        }
+    }
+
+    /// Value noise: the lattice's values, blended smoothly.
+    fn noise(&self, amplitude: f32, along: &[f32; BATCH], across: &[f32; BATCH], indices: &mut [u8; BATCH]) {
+        let lattice = lattice();
+        let mut cells = [0_u32; BATCH];
+        let mut shares = [[0.0_f32; BATCH]; 2];
+        for place in 0..BATCH {
+            let (x, y) = (along[place] * self.per_m, across[place] * self.per_m);
+            let ((column, left), (row, low)) = (floor(x), floor(y));
+            cells[place] = (row % LATTICE as u32) * LATTICE as u32 + column % LATTICE as u32;
+            shares[0][place] = smooth(x - left);
+            shares[1][place] = smooth(y - low);
+        }
+        let mut corners = [0_u32; BATCH];
+        for (corners, cell) in corners.iter_mut().zip(cells) {
+            *corners = lattice[cell as usize];
+        }
+        for place in 0..BATCH {
+            let (right, up) = (shares[0][place], shares[1][place]);
+            let corner = |shift: u32| ((corners[place] << shift) as i32 >> 24) as f32;
+            let low = corner(24) + (corner(16) - corner(24)) * right;
+            let high = corner(8) + (corner(0) - corner(8)) * right;
+            let value = (low + (high - low) * up) * (1.0 / 127.0);
+            // The horizon may leave no number here; the clamp turns that into the darkest colour.
+            let index = (amplitude + amplitude * value).max(0.0).min(2.0 * amplitude);
+            indices[place] = (index + TO_WHOLE).to_bits() as u8;
+        }
+    }
+}
+
+/// 3 t^2 - 2 t^3: level at both ends.
+fn smooth(share: f32) -> f32 {
+    share * share * (3.0 - 2.0 * share)
+}
+
+/// For each cell of the lattice the values at its four corners, -127 to 127, one in each byte from the lowest up: low
+/// left, low right, high left, high right.
+fn lattice() -> &'static [u32; LATTICE * LATTICE] {
+    static CELLS: LazyLock<Box<[u32; LATTICE * LATTICE]>> = LazyLock::new(|| {
+        let mut cells = Box::new([0; LATTICE * LATTICE]);
+        for (index, cell) in cells.iter_mut().enumerate() {
+            let (column, row) = (index % LATTICE, index / LATTICE);
+            let corners = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(right, up)| lattice_value(column + right, row + up));
+            *cell = u32::from_le_bytes(corners.map(|value| value as u8));
+        }
+        cells
+    });
+    &CELLS
+}
+
+/// The value of a lattice point: evenly spread over -127 to 127.
+fn lattice_value(column: usize, row: usize) -> i8 {
+    let mut hash = ((row % LATTICE) * LATTICE + column % LATTICE) as u32;
+    hash = (hash ^ 0x5bd1_e995).wrapping_mul(0x85eb_ca6b);
+    hash = (hash ^ (hash >> 13)).wrapping_mul(0xc2b2_ae35);
+    (((hash ^ (hash >> 16)) % 255) as i32 - 127) as i8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn indices(texture: Texture, places: &[(f32, f32)]) -> Vec<u8> {
+        let material = Material { name: String::new(), colour: [100; 3], texture, laser: true };
+        let light = Light { towards: Vector3::z(), ambient: 1.0, gain: 1.0 };
+        let mut looks = Looks::default();
+        looks.push(&material, &light, &Vector3::z());
+        let (mut along, mut across, mut indices) = ([0.0; BATCH], [0.0; BATCH], [0; BATCH]);
+        for (place, &(x, y)) in places.iter().enumerate() {
+            (along[place], across[place]) = (x, y);
+        }
+        looks.get(0).choose(&along, &across, &mut indices);
+        indices[..places.len()].to_vec()
+    }
+
+    #[test]
+    fn a_checker_alternates_along_both_axes_and_repeats_after_two_squares() {
+        let texture = Texture::Checker { amplitude: 20.0, scale_m: 0.5 };
+        let places = [(0.2, 0.2), (0.7, 0.2), (0.7, 0.7), (1.2, 0.2), (-0.2, 0.2), (-0.2, -0.2), (10.2, 20.2)];
+        assert_eq!(indices(texture, &places), [0, 1, 0, 0, 1, 0, 0]);
+    }
+
+    #[test]
+    fn stripes_run_across_the_second_axis_alone() {
+        let texture = Texture::Stripes { amplitude: 20.0, scale_m: 0.1 };
+        assert_eq!(indices(texture, &[(0.0, 0.05), (7.3, 0.05), (0.0, 0.15), (0.0, -0.05)]), [0, 0, 1, 1]);
+    }
+
+    #[test]
+    fn noise_is_the_lattice_value_at_a_lattice_point_and_repeats_after_the_lattice() {
+        let texture = Texture::Noise { amplitude: 127.0, scale_m: 1.0 };
+        let found = indices(texture, &[(3.0, 5.0), (3.0 + LATTICE as f32, 5.0), (3.5, 5.0), (f32::NAN, 0.0)]);
+        let here = i32::from(lattice_value(3, 5));
+        let right = i32::from(lattice_value(4, 5));
+        assert_eq!(i32::from(found[0]), 127 + here);
+        assert_eq!(found[1], found[0]);
+        assert!((i32::from(found[2]) - 127 - (here + right) / 2).abs() <= 1);
+    }
+}

@@ -1,0 +1,164 @@
+//! `run.toml`: all that is needed to do a run again, script and world included.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use toml::Table;
+
+use super::{policy_from_toml, read_stored, toml_error};
+use crate::diagnostic::{Diagnostic, Kind, Result, SourceText};
+use crate::experiment::Plan;
+use crate::geometry::Twist;
+use crate::learner::Policy;
+use crate::reward::Behaviour;
+use crate::settings::{FilterSettings, SETTINGS, Settings, Value, apply};
+use crate::world::Layout;
+
+const FORMAT: u32 = 1;
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RunFile {
+    format: u32,
+    engine: String,
+    behaviour: String,
+    seed: u64,
+    actions: Vec<[f64; 2]>,
+    filters: Vec<FilterEntry>,
+    settings: Table,
+    script: TextEntry,
+    world: TextEntry,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FilterEntry {
+    name: String,
+    parameters: Table,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TextEntry {
+    path: String,
+    sha256: String,
+    text: String,
+}
+
+impl TextEntry {
+    fn new(source: &SourceText) -> Self {
+        let path = source.path.display().to_string();
+        Self { path, sha256: sha256(&source.text), text: source.text.to_string() }
+    }
+
+    fn check(&self, file: &SourceText) -> Result<SourceText> {
+        if sha256(&self.text) != self.sha256 {
+            let message = format!("'{}' holds a changed copy of '{}'", file.path.display(), self.path);
+            return Diagnostic::new(Kind::State, "E-RUN-FILE", message).help("run the behaviour again").into();
+        }
+        Ok(SourceText::new(self.path.clone(), self.text.clone()))
+    }
+}
+
+fn sha256(text: &str) -> String {
+    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// The text of `run.toml`.
+///
+/// # Errors
+/// Never in practice: only if the settings cannot be written as TOML.
+pub fn run_to_toml(plan: &Plan, seed: u64) -> Result<String> {
+    let settings = &plan.settings;
+    let mut table = Table::new();
+    for row in SETTINGS {
+        let group = table.entry(row.group).or_insert_with(|| toml::Value::Table(Table::new()));
+        let value = match (row.get)(settings) {
+            Value::Flag(flag) => toml::Value::Boolean(flag),
+            Value::Text(text) => toml::Value::String(text),
+            Value::Number(number) => toml::Value::Float(number),
+        };
+        if let Some(group) = group.as_table_mut() {
+            group.insert(row.key.to_owned(), value);
+        }
+    }
+    let filter = |filter: &FilterSettings| FilterEntry {
+        name: filter.name.clone(),
+        parameters: filter.parameters.iter().map(|(key, value)| (key.clone(), toml::Value::Float(*value))).collect(),
+    };
+    let file = RunFile {
+        format: FORMAT,
+        engine: env!("CARGO_PKG_VERSION").to_owned(),
+        behaviour: plan.behaviour.name().to_owned(),
+        seed,
+        actions: settings.actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
+        filters: settings.filters.iter().map(filter).collect(),
+        settings: table,
+        script: TextEntry::new(plan.behaviour.source()),
+        world: TextEntry::new(&plan.layout.source),
+    };
+    toml::to_string_pretty(&file).map_err(|error| {
+        Box::new(Diagnostic::new(Kind::State, "E-RUN-FILE", format!("the settings cannot be written: {error}")))
+    })
+}
+
+/// A run read back from its folder.
+pub struct StoredRun {
+    /// The plan as it was, with its own world.
+    pub plan: Plan,
+    /// The seed.
+    pub seed: u64,
+    /// What was learned.
+    pub policy: Policy,
+}
+
+impl StoredRun {
+    /// Reads `run.toml` and `policy.toml` of a run's folder.
+    ///
+    /// # Errors
+    /// If a file is missing, damaged, or of another format.
+    pub fn load(folder: &Path) -> Result<Self> {
+        let source = read_stored(&folder.join("run.toml"))?;
+        let file: RunFile = toml::from_str(&source.text).map_err(|error| toml_error(&source, &error))?;
+        if file.format != FORMAT {
+            let message =
+                format!("'{}' has format {}, this engine reads format {FORMAT}", source.path.display(), file.format);
+            return Diagnostic::new(Kind::State, "E-RUN-FILE", message).into();
+        }
+        let behaviour = Arc::new(Behaviour::parse(&file.behaviour, file.script.check(&source)?)?);
+        let layout = Arc::new(Layout::parse(file.world.check(&source)?)?);
+        let settings = settings(&source, behaviour.settings(), &file)?;
+        let plan = Plan::with_layout(behaviour, settings, layout)?;
+        let states = plan.grid()?.states();
+        let policy = policy_from_toml(&read_stored(&folder.join("policy.toml"))?, &plan.settings, states)?;
+        Ok(Self { plan, seed: file.seed, policy })
+    }
+}
+
+fn settings(source: &SourceText, written: &Settings, file: &RunFile) -> Result<Settings> {
+    let mut settings = written.clone();
+    settings.actions = file.actions.iter().map(|[linear, angular]| Twist::new(*linear, *angular)).collect();
+    let number = |(key, value): (&String, &toml::Value)| Some((key.clone(), value.as_float()?));
+    settings.filters = (file.filters.iter())
+        .map(|filter| FilterSettings {
+            name: filter.name.clone(),
+            parameters: filter.parameters.iter().filter_map(number).collect(),
+        })
+        .collect();
+    for (group, keys) in &file.settings {
+        for (key, value) in keys.as_table().into_iter().flatten() {
+            let value = match value {
+                toml::Value::Boolean(flag) => Value::Flag(*flag),
+                toml::Value::String(text) => Value::Text(text.clone()),
+                other => Value::Number(other.as_float().unwrap_or(f64::NAN)),
+            };
+            apply(&mut settings, group, key, &value).map_err(|error| {
+                let message = format!("'{}': {} ({})", source.path.display(), error.message, error.found);
+                Box::new(Diagnostic::new(Kind::State, "E-RUN-FILE", message))
+            })?;
+        }
+    }
+    Ok(settings)
+}

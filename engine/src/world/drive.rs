@@ -1,0 +1,120 @@
+//! From the commanded speeds to the real ones: lag, noise, slip.
+
+use crate::geometry::Twist;
+use crate::random::{Random, Stream};
+use crate::settings::RobotSettings;
+
+/// The drive of the robot: wheels that follow a command with a first-order lag, and a ground on which they skid.
+#[derive(Debug, Clone)]
+pub(super) struct Drive {
+    pub(super) ticks: u32,
+    pub(super) tick_s: f64,
+    /// Share of the difference to the command that is left after one tick, and its mean over the tick.
+    left: f64,
+    mean_left: f64,
+    noise: f64,
+    grip: f64,
+    wheels: Twist,
+    factors: Twist,
+    random: Random,
+}
+
+impl Drive {
+    pub(super) fn new(robot: &RobotSettings, period_s: f64, seed: u64) -> Self {
+        // 0.5 / 0.05 must be ten ticks, whatever its last bit says.
+        let ticks = (period_s / robot.tick_s - 1e-9).ceil().max(1.0);
+        let tick_s = period_s / ticks;
+        let (left, mean_left) = if robot.lag_s > 0.0 {
+            let left = libm::exp(-tick_s / robot.lag_s);
+            (left, (1.0 - left) * robot.lag_s / tick_s)
+        } else {
+            (0.0, 0.0)
+        };
+        Self {
+            ticks: ticks as u32,
+            tick_s,
+            left,
+            mean_left,
+            noise: robot.speed_noise,
+            grip: 1.0 - robot.slip,
+            wheels: Twist::default(),
+            factors: Twist::new(1.0, 1.0),
+            random: Random::new(seed, Stream::Drive),
+        }
+    }
+
+    /// Stands still.
+    pub(super) fn stop(&mut self) {
+        self.wheels = Twist::default();
+    }
+
+    /// Draws the speed noise of one control period. Always two draws, so that no setting shifts later ones.
+    pub(super) fn begin(&mut self) {
+        let (linear, angular) = (self.random.normal(), self.random.normal());
+        self.factors = Twist::new(1.0 + self.noise * linear, 1.0 + self.noise * angular);
+    }
+
+    /// How far the centre can come in a period, metres.
+    pub(super) fn reach_m(&self, command: Twist) -> f64 {
+        let target = command.linear_m_per_s * self.factors.linear_m_per_s;
+        target.abs().max(self.wheels.linear_m_per_s.abs()) * self.tick_s * f64::from(self.ticks)
+    }
+
+    /// The mean speed of the wheels over the next tick.
+    pub(super) fn tick(&mut self, command: Twist) -> Twist {
+        let follow = |target: f64, speed: &mut f64| {
+            let behind = *speed - target;
+            *speed = target + behind * self.left;
+            target + behind * self.mean_left
+        };
+        Twist::new(
+            follow(command.linear_m_per_s * self.factors.linear_m_per_s, &mut self.wheels.linear_m_per_s),
+            follow(command.angular_rad_per_s * self.factors.angular_rad_per_s, &mut self.wheels.angular_rad_per_s),
+        )
+    }
+
+    /// What the ground makes of the wheels' speed: a skid-steered robot loses a share of its turn.
+    pub(super) fn on_ground(&self, wheels: Twist) -> Twist {
+        Twist::new(wheels.linear_m_per_s, wheels.angular_rad_per_s * self.grip)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn distance(tick_s: f64) -> f64 {
+        let robot = RobotSettings { lag_s: 0.15, speed_noise: 0.0, slip: 0.0, tick_s };
+        let mut drive = Drive::new(&robot, 0.5, 1);
+        drive.begin();
+        (0..drive.ticks).map(|_| drive.tick(Twist::new(0.4, 0.0)).linear_m_per_s * drive.tick_s).sum()
+    }
+
+    #[test]
+    fn the_distance_of_a_lagging_start_does_not_depend_on_the_tick() {
+        // 0.4 * (0.5 - 0.15 * (1 - exp(-0.5 / 0.15)))
+        let exact = 0.4 * (0.5 - 0.15 * (1.0 - (-0.5_f64 / 0.15).exp()));
+        for tick_s in [0.1, 0.05, 0.01, 0.03] {
+            assert!((distance(tick_s) - exact).abs() < 1e-12, "{tick_s}");
+        }
+    }
+
+    #[test]
+    fn half_a_second_has_ten_ticks_of_fifty_milliseconds() {
+        let robot = RobotSettings { lag_s: 0.0, speed_noise: 0.0, slip: 0.0, tick_s: 0.05 };
+        let drive = Drive::new(&robot, 0.5, 1);
+        assert_eq!((drive.ticks, drive.tick_s), (10, 0.05));
+        assert_eq!(Drive::new(&robot, 0.33, 1).ticks, 7);
+    }
+
+    #[test]
+    fn slip_takes_a_share_of_the_turn_only() {
+        let robot = RobotSettings { lag_s: 0.0, speed_noise: 0.0, slip: 0.25, tick_s: 0.05 };
+        let mut drive = Drive::new(&robot, 0.5, 1);
+        drive.begin();
+        let wheels = drive.tick(Twist::new(0.2, 0.8));
+        assert_eq!(wheels, Twist::new(0.2, 0.8));
+        let real = drive.on_ground(wheels);
+        assert!(real.linear_m_per_s == 0.2 && (real.angular_rad_per_s - 0.6).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,251 @@
+//! Reads a world file against its schema: syntax, names, types and ranges, each error at the user's own place.
+
+use super::schema::{FILE, Form, Key, MOST_POINTS};
+use crate::diagnostic::{Diagnostic, Kind, Result, SourceText, nearest_name, printable};
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+type Value<'a> = Spanned<DeValue<'a>>;
+
+/// A checked value.
+#[derive(Debug)]
+pub(super) enum Field {
+    Text(String),
+    Flag(bool),
+    Numbers(Vec<f64>),
+    /// Points with their places.
+    Points(Vec<([f64; 2], Range<usize>)>),
+    Rows(Vec<Row>),
+}
+
+/// A checked table.
+#[derive(Debug)]
+pub(super) struct Row {
+    /// Where it begins.
+    pub(super) span: Range<usize>,
+    fields: Vec<(&'static str, Range<usize>, Field)>,
+}
+
+impl Row {
+    fn field(&self, key: &str) -> Option<&Field> {
+        self.fields.iter().find(|(name, ..)| *name == key).map(|(.., field)| field)
+    }
+
+    /// The place of a key's value; the table's if the key is not there.
+    pub(super) fn span_of(&self, key: &str) -> Range<usize> {
+        self.fields.iter().find(|(name, ..)| *name == key).map_or(self.span.clone(), |(_, span, _)| span.clone())
+    }
+
+    pub(super) fn text(&self, key: &str) -> Option<&str> {
+        if let Some(Field::Text(text)) = self.field(key) { Some(text) } else { None }
+    }
+
+    pub(super) fn flag(&self, key: &str) -> Option<bool> {
+        if let Some(Field::Flag(flag)) = self.field(key) { Some(*flag) } else { None }
+    }
+
+    /// The numbers of an array; none if the key is not there.
+    pub(super) fn numbers(&self, key: &str) -> &[f64] {
+        if let Some(Field::Numbers(numbers)) = self.field(key) { numbers } else { &[] }
+    }
+
+    pub(super) fn number(&self, key: &str) -> Option<f64> {
+        self.numbers(key).first().copied()
+    }
+
+    pub(super) fn points(&self, key: &str) -> &[([f64; 2], Range<usize>)] {
+        if let Some(Field::Points(points)) = self.field(key) { points } else { &[] }
+    }
+
+    /// The tables of a section; none if it is not there.
+    pub(super) fn rows(&self, key: &str) -> &[Self] {
+        if let Some(Field::Rows(rows)) = self.field(key) { rows } else { &[] }
+    }
+}
+
+/// Reads the whole file.
+pub(super) fn read(source: &SourceText) -> Result<Row> {
+    let table = DeTable::parse(&source.text).map_err(|error| {
+        let span = error.span().unwrap_or(0..0);
+        let (message, help) = if error.message().contains("recursion limit") {
+            ("the file is nested too deeply", "a world needs three levels: a list of points, a point, a number")
+        } else if error.message().contains("duplicate key") {
+            ("a key is there twice", "keep one of the two; tables that may repeat are written [[name]]")
+        } else {
+            ("this is not TOML", "values stand after '=', text in quotes, lists in [ ]; see worlds/README.md")
+        };
+        Diagnostic::new(Kind::Input, "E-WORLD-SYNTAX", message)
+            .at(source, span, printable(&error.message().replace('\n', ", ")))
+            .help(help)
+    })?;
+    Reader { source }.row(table.get_ref(), 0..0, "", FILE)
+}
+
+struct Reader<'a> {
+    source: &'a SourceText,
+}
+
+impl Reader<'_> {
+    fn row(&self, table: &DeTable<'_>, span: Range<usize>, section: &str, keys: &'static [Key]) -> Result<Row> {
+        let mut fields = Vec::new();
+        // A table comes sorted by name; the first mistake is the first in the file.
+        let mut entries: Vec<_> = table.iter().collect();
+        entries.sort_by_key(|(name, _)| name.span().start);
+        for (name, value) in entries {
+            let Some(key) = keys.iter().find(|key| key.name == name.get_ref().as_ref()) else {
+                return self.unknown(name, section, keys).into();
+            };
+            fields.push((key.name, value.span(), self.value(key, value)?));
+        }
+        if let Some(key) = keys.iter().find(|key| key.required && !table.contains_key(key.name)) {
+            let message = format!("{} has no '{}'", of(section), key.name);
+            let help = format!("add '{} = ...': {}", key.name, key.allowed());
+            return Diagnostic::new(Kind::Input, "E-WORLD-KEY", message)
+                .at(self.source, span, format!("needs '{}'", key.name))
+                .help(help)
+                .into();
+        }
+        Ok(Row { span, fields })
+    }
+
+    fn unknown(&self, name: &Spanned<std::borrow::Cow<'_, str>>, section: &str, keys: &'static [Key]) -> Diagnostic {
+        let written = name.get_ref();
+        let stem = written.rsplit_once('_').map_or(written.as_ref(), |(stem, _)| stem);
+        // `height_cm` and `height` both mean `height_m`: the stem is right, the unit is not.
+        let same = keys.iter().find(|key| {
+            !key.unit.is_empty()
+                && key.name.rsplit_once('_').is_some_and(|(own, unit)| {
+                    let own = own.strip_suffix("_m_per").map_or(own, |own| own);
+                    unit.len() <= 3 && (own == written.as_ref() || own == stem || own == stem.trim_end_matches("_per"))
+                })
+        });
+        let near = nearest_name(written, keys.iter().map(|key| key.name));
+        let help = match (same, near) {
+            (Some(key), _) => format!("write '{}', in {}", key.name, key.unit),
+            (None, Some(near)) => format!("did you mean '{near}'?"),
+            _ => format!("it has: {}", keys.iter().map(|key| key.name).collect::<Vec<_>>().join(", ")),
+        };
+        let message = format!("{} has no key '{}'", of(section), printable(written));
+        Diagnostic::new(Kind::Input, "E-WORLD-KEY", message).at(self.source, name.span(), "not known").help(help)
+    }
+
+    fn wrong(&self, key: &Key, value: &Value<'_>, label: impl Into<String>) -> Diagnostic {
+        Diagnostic::new(Kind::Input, "E-WORLD-VALUE", format!("'{}' must be {}", key.name, key.allowed())).at(
+            self.source,
+            value.span(),
+            label,
+        )
+    }
+
+    fn value(&self, key: &'static Key, value: &Value<'_>) -> Result<Field> {
+        let found = || self.wrong(key, value, format!("found {}", shown(value.get_ref())));
+        Ok(match key.form {
+            Form::Text => Field::Text(value.get_ref().as_str().ok_or_else(found)?.to_owned()),
+            Form::Flag => Field::Flag(value.get_ref().as_bool().ok_or_else(found)?),
+            Form::Choice(words) => {
+                let word = value.get_ref().as_str().ok_or_else(found)?;
+                if !words.contains(&word) {
+                    let near = nearest_name(word, words.iter().copied());
+                    let error = found();
+                    return match near {
+                        Some(near) => error.help(format!("did you mean \"{near}\"?")).into(),
+                        None => error.into(),
+                    };
+                }
+                Field::Text(word.to_owned())
+            }
+            Form::Number(low, high) => Field::Numbers(vec![self.number(key, value, |n| (low..=high).contains(&n))?]),
+            Form::Numbers(count, low, high) => {
+                Field::Numbers(self.array(key, value, count..=count, |n| (low..=high).contains(&n))?)
+            }
+            Form::Points(least) => Field::Points(self.points(key, value, least)?),
+            Form::Table(keys) => {
+                let table = value.get_ref().as_table().ok_or_else(found)?;
+                Field::Rows(vec![self.row(table, value.span(), &format!("[{}]", key.name), keys)?])
+            }
+            Form::Tables(keys, most) => {
+                let tables = value.get_ref().as_array().ok_or_else(found)?;
+                if tables.len() > most {
+                    let label = format!("there are {}, at most {most} are allowed", tables.len());
+                    return self.wrong(key, value, label).into();
+                }
+                let section = format!("[[{}]]", key.name);
+                let rows = tables.iter().map(|row| {
+                    let wrong = || self.wrong(key, row, format!("found {}", shown(row.get_ref())));
+                    self.row(row.get_ref().as_table().ok_or_else(wrong)?, row.span(), &section, keys)
+                });
+                Field::Rows(rows.collect::<Result<_>>()?)
+            }
+        })
+    }
+
+    fn number(&self, key: &Key, value: &Value<'_>, allowed: impl Fn(f64) -> bool) -> Result<f64> {
+        let number = match value.get_ref() {
+            DeValue::Integer(whole) => i64::from_str_radix(whole.as_str(), whole.radix()).ok().map(|n| n as f64),
+            DeValue::Float(float) => float.as_str().parse().ok(),
+            _ => None,
+        };
+        match number {
+            // Not a number lies in no range.
+            Some(number) if allowed(number) => Ok(number + 0.0),
+            _ => self.wrong(key, value, format!("found {}", shown(value.get_ref()))).into(),
+        }
+    }
+
+    fn array(
+        &self,
+        key: &Key,
+        value: &Value<'_>,
+        count: std::ops::RangeInclusive<usize>,
+        allowed: impl Fn(f64) -> bool,
+    ) -> Result<Vec<f64>> {
+        let Some(array) = value.get_ref().as_array() else {
+            return self.wrong(key, value, format!("found {}", shown(value.get_ref()))).into();
+        };
+        if !count.contains(&array.len()) {
+            return self.wrong(key, value, format!("found {} numbers", array.len())).into();
+        }
+        array.iter().map(|number| self.number(key, number, &allowed)).collect()
+    }
+
+    fn points(&self, key: &Key, value: &Value<'_>, least: usize) -> Result<Vec<([f64; 2], Range<usize>)>> {
+        let Some(array) = value.get_ref().as_array() else {
+            return self.wrong(key, value, format!("found {}", shown(value.get_ref()))).into();
+        };
+        if !(least..=MOST_POINTS).contains(&array.len()) {
+            return self.wrong(key, value, format!("found {} points, at most {MOST_POINTS}", array.len())).into();
+        }
+        let mut points: Vec<([f64; 2], Range<usize>)> = Vec::with_capacity(array.len());
+        for point in array {
+            let pair = self.array(key, point, 2..=2, Key::coordinate)?;
+            let here = [pair[0], pair[1]];
+            let (x, y) = points.last().map_or((f64::MAX, 0.0), |(last, _)| (here[0] - last[0], here[1] - last[1]));
+            if x.abs().max(y.abs()) < 1e-6 {
+                return self
+                    .wrong(key, point, "the same point as the one before")
+                    .help("delete one of the two: a segment needs a length")
+                    .into();
+            }
+            points.push((here, point.span()));
+        }
+        Ok(points)
+    }
+}
+
+fn of(section: &str) -> String {
+    if section.is_empty() { "a world file".to_owned() } else { section.to_owned() }
+}
+
+/// A value in the words of the file, without its content where that may be long.
+fn shown(value: &DeValue<'_>) -> String {
+    match value {
+        DeValue::String(text) => format!("the text \"{}\"", printable(text)),
+        DeValue::Integer(whole) => whole.to_string(),
+        DeValue::Float(float) => float.to_string(),
+        DeValue::Boolean(flag) => flag.to_string(),
+        DeValue::Datetime(_) => "a date".to_owned(),
+        DeValue::Array(array) => format!("an array of {}", array.len()),
+        DeValue::Table(_) => "one table".to_owned(),
+    }
+}

@@ -1,0 +1,82 @@
+//! Things that drive along a route by themselves: the prey of a following behaviour.
+
+use super::footprint::{Obstacle, Stance};
+use super::route::Route;
+use super::scene::Solid;
+use crate::geometry::{Point3, Pose};
+
+/// A body of boxes that follows a route at constant speed; at the end of an open route it stops.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mover {
+    /// The name in the world file.
+    pub name: String,
+    /// Index of its route among the layout's.
+    pub route: usize,
+    /// Speed along the route, m/s.
+    pub speed_m_per_s: f64,
+    /// Where on the route it is at time 0, metres from the route's beginning.
+    pub offset_m: f64,
+    /// Its solids in its own axes: x forward, the origin on the floor at the place on the route.
+    pub solids: Vec<Solid>,
+}
+
+impl Mover {
+    /// Where it is at a time.
+    #[must_use]
+    pub fn pose_at(&self, routes: &[Route], time_s: f64) -> Pose {
+        let along_m = self.offset_m + self.speed_m_per_s * time_s;
+        routes.get(self.route).map_or(Pose::default(), |route| route.pose_at(along_m))
+    }
+
+    /// Writes its solids in world coordinates into the first of `places` and returns the rest.
+    pub(super) fn arrange<'a>(&self, at: Pose, places: &'a mut [Solid]) -> &'a mut [Solid] {
+        let (sin, cos) = libm::sincos(at.yaw_rad);
+        let (mine, rest) = places.split_at_mut(self.solids.len().min(places.len()));
+        for (solid, place) in self.solids.iter().zip(mine) {
+            let (x, y) = (solid.centre.x, solid.centre.y);
+            place.centre = Point3::new(at.x_m + x * cos - y * sin, at.y_m + x * sin + y * cos, solid.centre.z);
+            place.yaw_rad = at.yaw_rad + solid.yaw_rad;
+        }
+        rest
+    }
+}
+
+/// The solids of all movers at the present time.
+#[derive(Debug, Clone)]
+pub(super) struct Traffic {
+    solids: Vec<Solid>,
+    obstacles: Vec<Obstacle>,
+}
+
+impl Traffic {
+    /// All movers at time 0.
+    pub(super) fn new(movers: &[Mover], routes: &[Route]) -> Self {
+        let solids: Vec<Solid> = movers.iter().flat_map(|mover| mover.solids.iter().cloned()).collect();
+        let mut traffic = Self { obstacles: solids.iter().map(Obstacle::new).collect(), solids };
+        traffic.arrange(movers, routes, 0.0);
+        traffic
+    }
+
+    /// Moves everything to where it is at a time; the movers must be the same ones.
+    pub(super) fn arrange(&mut self, movers: &[Mover], routes: &[Route], time_s: f64) {
+        let mut places = self.solids.as_mut_slice();
+        for mover in movers {
+            places = mover.arrange(mover.pose_at(routes, time_s), places);
+        }
+        for (solid, obstacle) in self.solids.iter().zip(&mut self.obstacles) {
+            *obstacle = Obstacle::new(solid);
+        }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.solids.is_empty()
+    }
+
+    pub(super) fn solids(&self) -> &[Solid] {
+        &self.solids
+    }
+
+    pub(super) fn touches(&self, body: &Stance) -> bool {
+        self.obstacles.iter().any(|obstacle| obstacle.touches(body))
+    }
+}

@@ -1,0 +1,109 @@
+use std::path::{Path, PathBuf};
+
+use crate::support::root;
+
+/// Which rooms a room may use, besides itself and what all share.
+const IMPORTS: &[(&str, &[&str])] = &[
+    ("geometry", &[]),
+    ("random", &[]),
+    ("settings", &["geometry"]),
+    ("diagnostic", &[]),
+    ("world", &[]),
+    ("sensors", &["world"]),
+    ("filter", &["sensors"]),
+    ("state", &[]),
+    ("learner", &[]),
+    ("reward", &[]),
+    ("robot", &["world", "sensors"]),
+    ("experiment", &["world", "sensors", "filter", "state", "learner", "reward", "robot"]),
+    ("store", &["world", "learner", "reward", "experiment"]),
+    ("report", &["world", "sensors", "experiment"]),
+];
+const SHARED: &[&str] = &["geometry", "random", "settings", "diagnostic"];
+/// Words of the clock and of chance, and who may say them.
+const ONLY_IN: &[(&str, &[&str])] = &[
+    ("std::time", &["commands", "console"]),
+    ("rhai::", &["reward"]),
+    ("parry3d", &["world"]),
+    ("plotters", &["report"]),
+    ("HashMap", &["reward"]),
+    ("thread_rng", &[]),
+    (".mul_add(", &[]),
+];
+
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() && !path.ends_with("target") {
+            found.extend(sources(&path));
+        } else if path.extension().is_some_and(|ending| ending == "rs") {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+fn engine_sources() -> Vec<(String, PathBuf, String)> {
+    let folder = root().join("engine/src");
+    let room = |path: &Path| {
+        let first = path.strip_prefix(&folder).unwrap().components().next().unwrap();
+        first.as_os_str().to_str().unwrap().trim_end_matches(".rs").to_owned()
+    };
+    let read = |path: PathBuf| (room(&path), path.clone(), std::fs::read_to_string(path).unwrap());
+    sources(&folder).into_iter().map(read).collect()
+}
+
+fn is_test(path: &Path) -> bool {
+    path.components().any(|part| part.as_os_str() == "tests" || part.as_os_str() == "tests.rs")
+}
+
+#[test]
+fn rooms_import_only_what_the_map_allows() {
+    for (room, path, text) in engine_sources() {
+        let Some((_, allowed)) = IMPORTS.iter().find(|(name, _)| *name == room) else { continue };
+        for used in text.split("crate::").skip(1) {
+            let used: String = used.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+            let known = IMPORTS.iter().any(|(name, _)| *name == used);
+            let fine = !known || used == room || SHARED.contains(&used.as_str()) || allowed.contains(&used.as_str());
+            assert!(fine || is_test(&path), "{} uses {used}", path.display());
+        }
+    }
+}
+
+#[test]
+fn clocks_scripts_and_shapes_stay_in_their_rooms() {
+    for (room, path, text) in engine_sources() {
+        let product = text.split("#[cfg(test)]").next().unwrap();
+        for (word, rooms) in ONLY_IN {
+            let fine = !product.contains(word) || rooms.contains(&room.as_str()) || is_test(&path);
+            assert!(fine, "{} says {word}", path.display());
+        }
+    }
+}
+
+#[test]
+fn sines_come_from_libm() {
+    let methods = [".sin(", ".cos(", ".tan(", ".exp(", ".ln(", ".powf(", ".atan2(", ".sin_cos(", ".acos(", ".log("];
+    for (room, path, text) in engine_sources() {
+        if is_test(&path) || room == "commands" {
+            continue;
+        }
+        let product = text.split("#[cfg(test)]").next().unwrap();
+        for method in methods {
+            assert!(!product.contains(method), "{} calls {method}", path.display());
+        }
+    }
+}
+
+#[test]
+fn every_file_is_one_idea() {
+    let folders = ["engine/src", "plugins", "tests"];
+    for path in folders.iter().flat_map(|folder| sources(&root().join(folder))) {
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert!(text.lines().count() <= 400, "{} is too long", path.display());
+        let documented = text.starts_with("//!") || path.starts_with(root().join("tests")) || is_test(&path);
+        assert!(documented, "{} does not say what it is", path.display());
+    }
+}

@@ -1,0 +1,71 @@
+use crate::support::Bench;
+
+fn hash(text: &str) -> String {
+    let summary: serde_json::Value = serde_json::from_str(text).unwrap();
+    summary["state_hash"].as_str().unwrap().to_owned()
+}
+
+fn run(bench: &Bench, arguments: &[&str]) -> serde_json::Value {
+    let mut all = vec!["run", "short.rhai", "--json"];
+    all.extend(arguments);
+    serde_json::from_slice(&bench.engine(&all).stdout).unwrap()
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bytes() {
+    let bench = Bench::new();
+    run(&bench, &["--out", "a"]);
+    run(&bench, &["--out", "b"]);
+    for file in ["policy.toml", "curve.csv", "run.toml", "learning-curve.svg", "trajectories.png", "frame.png"] {
+        let read = |folder: &str| std::fs::read(bench.path().join(folder).join(file)).unwrap();
+        assert!(read("a") == read("b"), "{file}");
+    }
+    assert_eq!(hash(&bench.read("a/summary.json")), hash(&bench.read("b/summary.json")));
+}
+
+#[test]
+fn another_seed_gives_another_run() {
+    let bench = Bench::new();
+    run(&bench, &["--out", "a"]);
+    run(&bench, &["--seed", "2", "--out", "b"]);
+    assert_ne!(hash(&bench.read("a/summary.json")), hash(&bench.read("b/summary.json")));
+}
+
+#[test]
+fn one_thread_and_two_learn_the_same() {
+    let bench = Bench::new();
+    let hashes = |threads: &str| -> Vec<String> {
+        let spread = run(&bench, &["--seeds", "4", "--threads", threads, "--out", threads]);
+        spread["seeds"].as_array().unwrap().iter().map(|seed| seed["state_hash"].to_string()).collect()
+    };
+    let one = hashes("1");
+    assert_eq!(one.len(), 4);
+    assert_eq!(one, hashes("2"));
+}
+
+#[test]
+fn a_seed_is_the_same_alone_and_among_others() {
+    let bench = Bench::new();
+    run(&bench, &["--seeds", "3", "--out", "many"]);
+    run(&bench, &["--seed", "3", "--out", "alone"]);
+    assert_eq!(bench.read("many/3/policy.toml"), bench.read("alone/policy.toml"));
+    assert_eq!(hash(&bench.read("many/3/summary.json")), hash(&bench.read("alone/summary.json")));
+}
+
+#[test]
+fn a_stored_policy_tested_again_gives_the_figures_of_its_run() {
+    let bench = Bench::new();
+    let summary = run(&bench, &["--out", "a"]);
+    let again: serde_json::Value = serde_json::from_slice(&bench.engine(&["test", "a", "--json"]).stdout).unwrap();
+    assert_eq!(summary["test"], again);
+}
+
+#[test]
+fn a_run_needs_neither_its_script_nor_its_world_to_be_tested_again() {
+    let bench = Bench::new();
+    let summary = run(&bench, &["--out", "a"]);
+    std::fs::remove_file(bench.path().join("short.rhai")).unwrap();
+    std::fs::remove_dir_all(bench.path().join("worlds")).unwrap();
+    let again: serde_json::Value = serde_json::from_slice(&bench.engine(&["test", "a", "--json"]).stdout).unwrap();
+    assert_eq!(summary["test"], again);
+}
