@@ -1,5 +1,7 @@
 //! Integration tests, in one program. The table of contents:
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
 /// Runs the engine in a scratch folder.
 mod support;
 

@@ -56,7 +56,7 @@ fn the_curve_adds_up_to_the_rules() {
     bench.engine(&["run", "short.rhai"]);
     let table = bench.read("runs/short/1/curve.csv");
     let mut lines = table.lines();
-    assert_eq!(lines.next().unwrap(), "step,reinforcement,too close,contact");
+    assert_eq!(lines.next().unwrap(), "step,reinforcement_per_400_steps,too close,contact");
     for line in lines {
         let numbers: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
         assert_eq!(numbers[1], numbers[2] + numbers[3]);

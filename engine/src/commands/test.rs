@@ -35,7 +35,8 @@ pub(crate) fn print_figures(console: &mut Console, test: &TestFigures) -> Result
         test.steps, test.failures, test.failures_per_1000, test.contacts, test.mean_speed
     ))?;
     if let (Some(laps), Some(net_m)) = (test.laps, test.net_route_m) {
-        console.line(&format!("route:     {laps:.1} laps net ({net_m:.0} m of {:.0} m driven)", test.distance_m))?;
+        console
+            .line(&format!("route:     {laps:.1} laps, {net_m:.0} m net along it; {:.0} m driven", test.distance_m))?;
     }
     if let Some(distance_m) = test.prey_distance_m {
         console.line(&format!("prey:      median distance {distance_m:.2} m"))?;

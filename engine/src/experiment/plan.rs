@@ -93,7 +93,7 @@ impl Plan {
         let camera = &self.settings.camera;
         Grid::new(&self.settings.grid, camera.width_px as usize, camera.height_px as usize).map_err(|error| {
             let help = Some("use fewer rows or columns".to_owned());
-            self.point(Diagnostic::new(Kind::Input, "E-GRID", error.0), "grid", "here", help)
+            self.point(Diagnostic::new(Kind::Input, "E-GRID", error.0), "grid.rows", "this many rows", help)
         })
     }
 
@@ -153,8 +153,7 @@ fn set(settings: &mut Settings, pair: &str) -> Result<()> {
         return set_filter(settings, key, &value);
     }
     apply(settings, group, key, &value).map_err(|error| {
-        let message = format!("{} ({})", error.message, error.found);
-        let diagnostic = Diagnostic::new(Kind::Usage, "E-SET", message);
+        let diagnostic = Diagnostic::new(Kind::Usage, "E-SET", format!("{}: '{}'", error.message, printable(pair)));
         Box::new(match error.help {
             Some(help) => diagnostic.help(help),
             None => diagnostic,

@@ -83,7 +83,8 @@ pub struct TestFigures {
     pub backwards: Option<f64>,
     /// Median distance between the robot and the prey, metres, centre to centre; null without one.
     pub prey_distance_m: Option<f64>,
-    /// Whether the robot does more than avoid punishment: half of 0.2 m/s net along the route; null without a route.
+    /// Whether the robot does more than avoid punishment: half of 0.2 m/s net along the route, in either direction; null
+    /// without a route.
     pub does_task: Option<bool>,
 }
 
@@ -108,7 +109,7 @@ impl TestFigures {
             circling: share(truth.spells.circling),
             backwards: net_route_m.map(|_| share(truth.spells.backwards)),
             prey_distance_m: median(&truth.prey_m.iter().map(|distance| f64::from(*distance)).collect::<Vec<_>>()),
-            does_task: net_route_m.map(|net_m| net_m / seconds >= TASK_SPEED_M_PER_S),
+            does_task: net_route_m.map(|net_m| net_m.abs() / seconds >= TASK_SPEED_M_PER_S),
         }
     }
 }
@@ -129,7 +130,7 @@ impl Summary {
             seed: learned.seed,
             steps: learned.steps,
             steps_per_second: ((learned.steps + test.steps) as f64 / seconds.max(1e-9)).round(),
-            learned_at: learned_at(&curve),
+            learned_at: learned_at(&curve[..(learned.steps / WINDOW_STEPS) as usize]),
             reinforcement_per_400: curve,
             rules: rules.collect(),
             states_seen: learned.policy.rows().iter().flatten().count(),
@@ -170,7 +171,7 @@ pub struct Figures {
     pub learned_at: Option<u64>,
     /// Failures in 1,000 steps of the test.
     pub failures_per_1000: f64,
-    /// Laps of the test; null without a route.
+    /// Laps of the test, in whichever direction; null without a route.
     pub laps: Option<f64>,
     /// Median distance to the prey, metres; null without one.
     pub prey_distance_m: Option<f64>,
@@ -189,7 +190,8 @@ impl Spread {
                 of(&mut seeds.iter().map(value).collect(), worst_is_high)
             };
             let learned_at = pick(true, &|seed| seed.learned_at.map_or(f64::INFINITY, |step| step as f64));
-            let laps = pick(false, &|seed| seed.test.laps.unwrap_or(f64::NAN));
+            // Which way round is the script's affair.
+            let laps = pick(false, &|seed| seed.test.laps.map_or(f64::NAN, f64::abs));
             let prey = pick(true, &|seed| seed.test.prey_distance_m.unwrap_or(f64::NAN));
             Figures {
                 learned_at: learned_at.is_finite().then_some(learned_at as u64),

@@ -7,7 +7,7 @@ use crate::diagnostic::Result;
 use crate::geometry::Twist;
 use crate::sensors::observation::Observation;
 use crate::sensors::{Camera, CameraWatch, Laser, self_test};
-use crate::settings::Settings;
+use crate::settings::{CameraSettings, Settings};
 use crate::world::{Layout, Motion, World};
 
 /// A Pioneer 2-AT with a camera and a laser, in a world.
@@ -28,12 +28,14 @@ impl SimulatedRobot {
     /// If no pose is safe, or the camera shows nothing from there.
     pub fn new(layout: &Arc<Layout>, settings: &Settings, seed: u64) -> Result<Self> {
         let mut world = World::new(Arc::clone(layout), &settings.robot, settings.run.period_s, seed);
-        let mut camera = Camera::new(&layout.scene, &settings.camera, seed);
+        let camera = Camera::new(&layout.scene, &settings.camera, seed);
         let laser = Laser::new(&layout.scene, &settings.laser, seed);
         let mut recovery = Recovery::new(&settings.recovery, seed);
         let start = recovery.pose(&world)?;
         world.place(start);
-        self_test(&mut camera, &world.body().world_from_robot(), world.moving())?;
+        // Noise would hide a blank image from the test.
+        let mut quiet = Camera::new(&layout.scene, &CameraSettings { noise: 0.0, ..settings.camera.clone() }, seed);
+        self_test(&mut quiet, &world.body().world_from_robot(), world.moving())?;
         let (watch, motion) = (CameraWatch::new(), Motion::default());
         Ok(Self { world, camera, laser, watch, recovery, motion, moved: false })
     }

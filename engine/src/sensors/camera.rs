@@ -8,8 +8,8 @@ use super::painting::{Drawn, Painter};
 use super::spans::Spans;
 use super::surface::Surfaces;
 use super::texture::{BATCH, Looks};
-use super::view::{Affine, Pinhole, View};
-use crate::geometry::{Isometry3, Vector3};
+use super::view::{Affine, Frustum, Pinhole, View};
+use crate::geometry::{Isometry3, Point3, Vector3};
 use crate::settings::CameraSettings;
 use crate::world::scene::{Scene, Solid};
 use std::sync::Arc;
@@ -110,8 +110,9 @@ impl Camera {
             *image = Image::new(self.width_px, self.height_px);
         }
         let view = self.view(world_from_robot);
-        self.place_movers(moving);
-        self.find_visible(&view);
+        let frustum = view.frustum();
+        self.place_movers(moving, &frustum);
+        self.find_visible(&view, &frustum);
         self.shade(image);
         if let Some(noise) = &self.noise {
             noise.add(self.frame, &mut image.pixels, self.width_px * 3);
@@ -126,12 +127,17 @@ impl Camera {
         View { pinhole: self.pinhole, position, right, down, forward }
     }
 
-    fn place_movers(&mut self, moving: &[Solid]) {
+    /// Makes faces of the movers that may be in sight.
+    fn place_movers(&mut self, moving: &[Solid], frustum: &Frustum) {
         let parts = self.scene.parts();
         self.moving.clear();
         self.looks.truncate(self.standing_looks);
         for solid in moving {
-            self.moving.push(solid);
+            let (min, max) = solid.bounds();
+            let single = |point: Point3| [point.x as f32, point.y as f32, point.z as f32];
+            if frustum.meets(&single(min), &single(max)) {
+                self.moving.push(solid);
+            }
         }
         for face in self.moving.faces() {
             self.looks.push(&parts.materials[face.material], &parts.light, &face.normal);
@@ -139,7 +145,7 @@ impl Camera {
     }
 
     /// Fills the spans with everything in sight.
-    fn find_visible(&mut self, view: &View) {
+    fn find_visible(&mut self, view: &View, frustum: &Frustum) {
         self.spans.clear();
         self.drawn.clear();
         self.nearness.clear();
@@ -153,7 +159,6 @@ impl Camera {
             self.drawn[FLOOR_FACE as usize].coordinates =
                 [Vector3::x(), Vector3::y()].map(|axis| view.coordinate(&axis, &origin, nearness));
         }
-        let frustum = view.frustum();
         self.seen.clear();
         let seen = &mut self.seen;
         self.scene.visit(|min, max| frustum.meets(&min, &max), |solid| seen.push(solid));

@@ -107,12 +107,13 @@ impl Laser {
                 self.beams.meet(&plane, &self.surfaces, index, solid);
             }
         }
-        self.moving.clear();
-        for (index, solid) in moving.iter().enumerate() {
-            self.moving.push(solid);
-            if solid.collides && parts.materials[solid.material].laser {
-                self.beams.meet(&plane, &self.moving, index, solid);
+        for solid in moving.iter().filter(|solid| solid.collides && parts.materials[solid.material].laser) {
+            self.moving.clear();
+            // A cylinder is measured as itself, not by faces.
+            if !matches!(solid.shape, Shape::Cylinder { .. }) {
+                self.moving.push(solid);
             }
+            self.beams.meet(&plane, &self.moving, 0, solid);
         }
         self.measure(scan);
         self.scans += 1;

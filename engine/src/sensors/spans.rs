@@ -19,8 +19,8 @@ pub(super) struct Run {
 pub(super) struct Spans {
     width_px: usize,
     rows: Vec<Vec<Run>>,
-    /// First and one past the last pixel of the polygon at hand, for each row.
-    bounds: Vec<[u16; 2]>,
+    /// First pixel of the polygon at hand in each row, and one past its last.
+    bounds: [Vec<u16>; 2],
     rebuilt: Vec<Run>,
 }
 
@@ -36,7 +36,7 @@ impl Spans {
         Self {
             width_px,
             rows: vec![Vec::with_capacity(32); height_px],
-            bounds: vec![[0; 2]; height_px],
+            bounds: [vec![0; height_px], vec![0; height_px]],
             rebuilt: Vec::with_capacity(64),
         }
     }
@@ -76,7 +76,7 @@ impl Spans {
         }
         let overlay = Overlay { face, nearness };
         for row in first..last {
-            let [start, end] = self.bounds[row];
+            let [start, end] = [self.bounds[0][row], self.bounds[1][row]];
             if start < end {
                 let run = Run { start, end, face };
                 let runs = &mut self.rows[row];
@@ -100,11 +100,10 @@ impl Spans {
             return;
         }
         let slope = (bottom[0] - top[0]) / (bottom[1] - top[1]);
-        let mut middle = first as f64 + 0.5 - top[1];
-        let side = usize::from(!on_left);
-        for bounds in &mut self.bounds[first..last] {
-            bounds[side] = nearest_whole(top[0] + middle * slope, width) as u16;
-            middle += 1.0;
+        let from_top = 0.5 - top[1];
+        let rows = first as i32..last as i32;
+        for (bound, row) in self.bounds[usize::from(!on_left)][first..last].iter_mut().zip(rows) {
+            *bound = nearest_whole(top[0] + (f64::from(row) + from_top) * slope, width) as u16;
         }
     }
 }
@@ -119,6 +118,9 @@ impl Overlay<'_> {
     /// Puts `new` among the sorted `runs`; whichever is nearer keeps each pixel.
     fn insert(&self, runs: &mut Vec<Run>, rebuilt: &mut Vec<Run>, new: Run, row: usize) {
         let before = runs.iter().take_while(|run| run.end <= new.start).count();
+        if self.insert_alone(runs, before, new, row) {
+            return;
+        }
         rebuilt.clear();
         let mut placed = new.start;
         for &old in &runs[before..] {
@@ -141,6 +143,32 @@ impl Overlay<'_> {
         push(rebuilt, Run { start: placed, ..new });
         runs.truncate(before);
         runs.extend_from_slice(rebuilt);
+    }
+
+    /// The usual cases, in place: `new` meets nothing, or the run at `at` alone and on one side of it throughout.
+    fn insert_alone(&self, runs: &mut Vec<Run>, at: usize, new: Run, row: usize) -> bool {
+        let old = runs[at];
+        if new.end <= old.start {
+            runs.insert(at, new);
+            return true;
+        }
+        if new.start < old.start || old.end < new.end {
+            return false;
+        }
+        let (split, new_first) = self.compare(old.face, new.start, new.end, row);
+        if split < new.end {
+            return false;
+        }
+        if new_first {
+            runs[at] = new;
+            if new.end < old.end {
+                runs.insert(at + 1, Run { start: new.end, ..old });
+            }
+            if old.start < new.start {
+                runs.insert(at, Run { end: new.start, ..old });
+            }
+        }
+        true
     }
 
     /// Where within `start..end` the nearer face changes, and whether the new one is nearer before that.

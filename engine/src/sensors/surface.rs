@@ -4,6 +4,7 @@ use crate::geometry::Vector3;
 use crate::world::scene::{Shape, Solid};
 use std::f64::consts::TAU;
 use std::ops::Range;
+use std::sync::LazyLock;
 
 /// Sides of the prism that stands for a cylinder in the image; its edges are within 0.5 % of the radius.
 pub(super) const CYLINDER_SIDES: usize = 32;
@@ -120,11 +121,7 @@ impl Surfaces {
     }
 
     fn push_cylinder(&mut self, at: &Placement, radius: f64, z: f64) {
-        let mut rim = [[0.0; 2]; CYLINDER_SIDES];
-        for (index, point) in rim.iter_mut().enumerate() {
-            let (sin, cos) = libm::sincos(TAU * index as f64 / CYLINDER_SIDES as f64);
-            *point = [radius * cos, radius * sin];
-        }
+        let rim = unit_circle().map(|point| point.map(|part| part * radius));
         let mut top = [[0.0; 3]; CYLINDER_SIDES];
         let mut bottom = top;
         for index in 0..CYLINDER_SIDES {
@@ -163,6 +160,17 @@ impl Surfaces {
             sunk: points.iter().any(|point| point.z < 0.0),
         });
     }
+}
+
+/// The corners of the prism that stands for a cylinder of radius 1.
+fn unit_circle() -> &'static [[f64; 2]; CYLINDER_SIDES] {
+    static CORNERS: LazyLock<[[f64; 2]; CYLINDER_SIDES]> = LazyLock::new(|| {
+        std::array::from_fn(|index| {
+            let (sin, cos) = libm::sincos(TAU * index as f64 / CYLINDER_SIDES as f64);
+            [cos, sin]
+        })
+    });
+    &CORNERS
 }
 
 #[cfg(test)]

@@ -219,7 +219,7 @@ pub fn apply(settings: &mut Settings, group: &str, key: &str, value: &Value) -> 
         return Err(SettingError {
             message: format!("'{}' must be {}", row.key, row.allowed()),
             found: format!("found {value}"),
-            help: Some(format!("the default is {}: {}", (row.get)(&Settings::default()), row.purpose)),
+            help: Some(format!("the default is {}. {}", (row.get)(&Settings::default()), row.purpose)),
         });
     }
     (row.set)(settings, value);

@@ -70,8 +70,11 @@ pub struct Plugin {
     /// What the filter says of itself.
     pub descriptor: &'static Descriptor,
     /// Creates an instance. The host passes one finite value for each parameter, in order and within its range.
-    pub create: fn(&[f64]) -> Result<Box<dyn Filter>, FilterError>,
+    pub create: Create,
 }
+
+/// Creates a filter from the values of its parameters, in the order of its descriptor.
+pub type Create = fn(&[f64]) -> Result<Box<dyn Filter>, FilterError>;
 
 /// Why a filter could not do its work, in words for the person who set it up.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,0 +1,164 @@
+//! Conditions and values as small native trees: what a rule costs is what they cost.
+
+use super::facts::{self, Facts};
+
+/// A part of what `fn calibrate` returned, as rules read it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Slot {
+    Number(f64),
+    Numbers(Vec<f64>),
+    Other,
+}
+
+/// What a tree reads.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Inputs<'a> {
+    pub facts: &'a Facts,
+    pub slots: &'a [Slot],
+}
+
+/// An operator between two numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Arithmetic {
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Remainder,
+}
+
+/// A comparison of two numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Comparison {
+    Less,
+    LessOrEqual,
+    Greater,
+    GreaterOrEqual,
+    Equal,
+    Unequal,
+}
+
+/// A tree with a number as its value.
+#[derive(Debug, Clone)]
+pub(super) enum Number {
+    Constant(f64),
+    Fact(fn(&Facts) -> f64, super::fact_table::Reach),
+    Whole(fn(&Facts) -> i64),
+    Beam(usize),
+    Cell(usize, usize),
+    Sector(usize, usize, fn(&[f32]) -> f64),
+    CountBelow(usize, usize, Box<Number>),
+    Excess(usize, usize, usize),
+    Calibrated(usize),
+    Negate(Box<Number>),
+    Binary(Arithmetic, Box<[Number; 2]>),
+    OfOne(fn(f64) -> f64, Box<Number>),
+    OfTwo(fn(f64, f64) -> f64, Box<[Number; 2]>),
+}
+
+/// A tree that is true or false.
+#[derive(Debug, Clone)]
+pub(super) enum Flag {
+    Constant(bool),
+    Fact(fn(&Facts) -> bool),
+    Compare(Comparison, Box<[Number; 2]>),
+    Same(Box<[Flag; 2]>),
+    Not(Box<Flag>),
+    And(Vec<Flag>),
+    Or(Vec<Flag>),
+}
+
+impl Number {
+    pub(super) fn value(&self, inputs: Inputs<'_>) -> f64 {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Fact(get, _) => get(inputs.facts),
+            Self::Whole(get) => get(inputs.facts) as f64,
+            Self::Beam(beam) => inputs.facts.beam_m(*beam),
+            Self::Cell(row, column) => inputs.facts.cell(*row, *column),
+            Self::Sector(from, to, get) => get(inputs.facts.sector_m(*from, *to)),
+            Self::CountBelow(from, to, limit) => {
+                facts::count_below(inputs.facts.sector_m(*from, *to), limit.value(inputs)) as f64
+            }
+            Self::Excess(from, to, slot) => match inputs.slots.get(*slot) {
+                Some(Slot::Numbers(expected)) => facts::excess(inputs.facts.sector_m(*from, *to), expected),
+                _ => f64::NAN,
+            },
+            Self::Calibrated(slot) => match inputs.slots.get(*slot) {
+                Some(Slot::Number(value)) => *value,
+                _ => f64::NAN,
+            },
+            Self::Negate(of) => -of.value(inputs),
+            Self::Binary(operator, pair) => operator.apply(pair[0].value(inputs), pair[1].value(inputs)),
+            Self::OfOne(function, of) => function(of.value(inputs)),
+            Self::OfTwo(function, pair) => function(pair[0].value(inputs), pair[1].value(inputs)),
+        }
+    }
+}
+
+impl Flag {
+    pub(super) fn holds(&self, inputs: Inputs<'_>) -> bool {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Fact(get) => get(inputs.facts),
+            Self::Compare(comparison, pair) => comparison.holds(pair[0].value(inputs), pair[1].value(inputs)),
+            Self::Same(pair) => pair[0].holds(inputs) == pair[1].holds(inputs),
+            Self::Not(of) => !of.holds(inputs),
+            Self::And(all) => all.iter().all(|flag| flag.holds(inputs)),
+            Self::Or(any) => any.iter().any(|flag| flag.holds(inputs)),
+        }
+    }
+}
+
+impl Arithmetic {
+    pub(super) fn of(symbol: &str) -> Option<Self> {
+        Some(match symbol {
+            "+" => Self::Add,
+            "-" => Self::Subtract,
+            "*" => Self::Multiply,
+            "/" => Self::Divide,
+            "%" => Self::Remainder,
+            _ => return None,
+        })
+    }
+
+    pub(super) fn apply(self, a: f64, b: f64) -> f64 {
+        match self {
+            Self::Add => a + b,
+            Self::Subtract => a - b,
+            Self::Multiply => a * b,
+            Self::Divide => a / b,
+            Self::Remainder => a % b,
+        }
+    }
+}
+
+impl Comparison {
+    pub(super) fn of(symbol: &str) -> Option<Self> {
+        Some(match symbol {
+            "<" => Self::Less,
+            "<=" => Self::LessOrEqual,
+            ">" => Self::Greater,
+            ">=" => Self::GreaterOrEqual,
+            "==" => Self::Equal,
+            "!=" => Self::Unequal,
+            _ => return None,
+        })
+    }
+
+    /// Whether it says which of two numbers is the greater one.
+    pub(super) const fn orders(self) -> bool {
+        !matches!(self, Self::Equal | Self::Unequal)
+    }
+
+    pub(super) fn holds(self, a: f64, b: f64) -> bool {
+        match self {
+            Self::Less => a < b,
+            Self::LessOrEqual => a <= b,
+            Self::Greater => a > b,
+            Self::GreaterOrEqual => a >= b,
+            Self::Equal => a == b,
+            Self::Unequal => a != b,
+        }
+    }
+}

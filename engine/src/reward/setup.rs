@@ -1,0 +1,306 @@
+//! The set-up calls at the top of a script: written down while it runs, then turned into settings.
+
+use super::explain;
+use super::source::Code;
+use super::views::number;
+use crate::diagnostic::{Diagnostic, Kind, Result, printable};
+use crate::geometry::Twist;
+use crate::settings::{self, FilterSettings, Settings, Value};
+use rhai::{AST, ASTNode, Dynamic, Engine, Expr, FnCallExpr, Map, NativeCallContext, Position, Stmt};
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// One row of the list of set-up calls.
+#[derive(Debug, Clone, Copy)]
+pub struct SetupCall {
+    /// Its name: `camera`.
+    pub name: &'static str,
+    /// How it is written.
+    pub form: &'static str,
+    /// One sentence: what it sets.
+    pub purpose: &'static str,
+}
+
+const fn row(name: &'static str, form: &'static str, purpose: &'static str) -> SetupCall {
+    SetupCall { name, form, purpose }
+}
+
+/// Every set-up call.
+pub const SETUP: &[SetupCall] = &[
+    row("world", "world(\"room\");", "The world to learn in: its name, or the path of a world file."),
+    row(
+        "filter",
+        "filter(\"sobel\", #{ threshold: 60 });",
+        "One stage of the filter chain; several calls make a chain.",
+    ),
+    row("actions", "actions([[0.4, 0.2], [0.4, 0.0]]);", "The actions: forward speed in m/s, turning speed in rad/s."),
+    row("run", "run(#{ steps: 5200 });", "The length and the rhythm of a run."),
+    row("robot", "robot(#{ lag_s: 0.15 });", "How the robot moves."),
+    row("camera", "camera(#{ tilt_deg: 42 });", "The camera and its mount."),
+    row("laser", "laser(#{ tilt_deg: 45 });", "The laser and its mount."),
+    row("grid", "grid(#{ rows: 3, columns: 3 });", "How a filtered image becomes a state."),
+    row("learner", "learner(\"ttd\", #{ step_size: 0.2 });", "The way of learning and its parameters."),
+    row("recovery", "recovery(\"nearest\", #{ yaw_deg: 8.6 });", "What `then recover` does."),
+];
+
+/// Most set-up calls in one script.
+const MAX_CALLS: usize = 256;
+/// Most actions.
+const MAX_ACTIONS: usize = 64;
+/// Fastest forward motion of an action, m/s.
+const MAX_LINEAR: f64 = 2.0;
+/// Fastest turn of an action, rad/s.
+const MAX_ANGULAR: f64 = 6.0;
+
+#[derive(Debug)]
+struct Call {
+    name: &'static str,
+    arguments: Vec<Dynamic>,
+    position: Position,
+}
+
+/// What the script called while its top level ran.
+#[derive(Debug, Clone)]
+pub(super) struct Log(Arc<Mutex<(bool, Vec<Call>)>>);
+
+impl Log {
+    /// A log that is written until it is closed, and the calls that write it.
+    pub(super) fn register(engine: &mut Engine) -> Self {
+        let log = Self(Arc::new(Mutex::new((true, Vec::new()))));
+        for row in SETUP {
+            let name = row.name;
+            let one = log.clone();
+            engine.register_fn(name, move |c: NativeCallContext| one.write(name, c.call_position(), vec![]));
+            let one = log.clone();
+            engine
+                .register_fn(name, move |c: NativeCallContext, a: Dynamic| one.write(name, c.call_position(), vec![a]));
+            let one = log.clone();
+            engine.register_fn(name, move |c: NativeCallContext, a: Dynamic, b: Dynamic| {
+                one.write(name, c.call_position(), vec![a, b])
+            });
+            let one = log.clone();
+            engine.register_fn(name, move |c: NativeCallContext, a: Dynamic, b: Dynamic, d: Dynamic| {
+                one.write(name, c.call_position(), vec![a, b, d])
+            });
+        }
+        log
+    }
+
+    fn write(
+        &self,
+        name: &'static str,
+        position: Position,
+        arguments: Vec<Dynamic>,
+    ) -> std::result::Result<(), Box<rhai::EvalAltResult>> {
+        let mut log = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let fault = match &*log {
+            (false, _) => format!("'{name}' sets up: it belongs at the top of the script, not into a function"),
+            (true, calls) if calls.len() >= MAX_CALLS => format!("more than {MAX_CALLS} set-up calls"),
+            _ => {
+                log.1.push(Call { name, arguments, position });
+                return Ok(());
+            }
+        };
+        Err(Box::new(rhai::EvalAltResult::ErrorRuntime(fault.into(), position)))
+    }
+
+    fn close(&self) -> Vec<Call> {
+        let mut log = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        log.0 = false;
+        std::mem::take(&mut log.1)
+    }
+}
+
+/// Settings, and where each was set.
+pub(super) type Places = BTreeMap<String, Range<usize>>;
+
+/// Ends the set-up: the settings that the calls make, over the defaults.
+///
+/// # Errors
+/// For the first call that is wrong, with its place: an unknown key, a value out of range, a setting made twice.
+pub(super) fn finish(log: &Log, code: &Code, ast: &AST) -> Result<(Settings, Places)> {
+    let mut setup = Setup { code, ast, settings: Settings::default(), places: Places::new(), call: Position::NONE };
+    for call in log.close() {
+        setup.call = call.position;
+        setup.apply(call.name, call.arguments)?;
+    }
+    Ok((setup.settings, setup.places))
+}
+
+struct Setup<'a> {
+    code: &'a Code,
+    ast: &'a AST,
+    settings: Settings,
+    places: Places,
+    call: Position,
+}
+
+impl Setup<'_> {
+    fn apply(&mut self, name: &'static str, arguments: Vec<Dynamic>) -> Result<()> {
+        let form = SETUP.iter().find(|row| row.name == name).map_or("", |row| row.form);
+        let mut arguments = arguments.into_iter();
+        let (first, second) = (arguments.next(), arguments.next());
+        match (name, first, second, arguments.next()) {
+            ("world", Some(world), None, None) if world.is_string() => {
+                self.settings.world = self.word(world, form)?;
+                self.mark("world".to_owned(), self.call)
+            }
+            ("filter", Some(filter), parameters, None) if filter.is_string() => self.filter(filter, parameters, form),
+            ("actions", Some(actions), None, None) if actions.is_array() => {
+                self.settings.actions = self.actions(actions)?;
+                self.mark("actions".to_owned(), self.call)
+            }
+            ("learner" | "recovery", Some(kind), map, None) if kind.is_string() => {
+                let key = if name == "learner" { "kind" } else { "to" };
+                let kind = self.word(kind, form)?;
+                self.set(name, key, &Value::Text(kind), self.call)?;
+                map.map_or(Ok(()), |map| self.group(name, map, form))
+            }
+            (group, Some(map), None, None) if !matches!(group, "world" | "filter" | "actions") => {
+                self.group(group, map, form)
+            }
+            _ => self.wrong(self.call, format!("'{name}' is written otherwise"), "found this", form),
+        }
+    }
+
+    fn wrong<T>(&self, position: Position, message: String, label: &str, form: &str) -> Result<T> {
+        let diagnostic = explain::mistake(&self.code.source, "E-SCRIPT-SETTING", position, message, label);
+        diagnostic.help(format!("write {form}")).into()
+    }
+
+    fn word(&self, value: Dynamic, form: &str) -> Result<String> {
+        let word = value.into_string().unwrap_or_default();
+        if word.trim().is_empty() {
+            return self.wrong(self.call, "the name is empty".to_owned(), "no name", form);
+        }
+        Ok(word)
+    }
+
+    fn mark(&mut self, setting: String, position: Position) -> Result<()> {
+        let source = &self.code.source;
+        let span = source.word_at(explain::offset(source, position));
+        if let Some(before) = self.places.get(&setting) {
+            let (line, _) = source.position(before.start);
+            return Diagnostic::new(Kind::Input, "E-SCRIPT-SETTING", format!("'{setting}' is set twice"))
+                .at(source, span, "the second time")
+                .help(format!("keep one of the two; the first is in line {line}"))
+                .into();
+        }
+        self.places.insert(setting, span);
+        Ok(())
+    }
+
+    fn group(&mut self, group: &'static str, map: Dynamic, form: &str) -> Result<()> {
+        let Some(map) = map.try_cast::<Map>() else {
+            return self.wrong(
+                self.call,
+                format!("'{group}' needs its settings by name"),
+                "found something else",
+                form,
+            );
+        };
+        for (key, value) in map {
+            let (at_key, at_value) = self.entry(&key);
+            let value = match (number(&value), value.as_bool(), value.clone().into_string()) {
+                (Some(number), ..) => Value::Number(number),
+                (_, Ok(flag), _) => Value::Flag(flag),
+                (.., Ok(text)) => Value::Text(text),
+                _ => {
+                    let message = format!("'{}' must be one value", printable(&key));
+                    return self.wrong(at_value, message, "found something else", form);
+                }
+            };
+            let known = settings::SETTINGS.iter().any(|row| row.group == group && row.key == key.as_str());
+            self.set(group, &key, &value, if known { at_value } else { at_key })?;
+        }
+        Ok(())
+    }
+
+    fn set(&mut self, group: &'static str, key: &str, value: &Value, position: Position) -> Result<()> {
+        if let Err(error) = settings::apply(&mut self.settings, group, key, value) {
+            let source = &self.code.source;
+            let mut wrong = explain::mistake(source, "E-SCRIPT-SETTING", position, error.message, error.found);
+            wrong.help = error.help;
+            return wrong.into();
+        }
+        self.mark(format!("{group}.{key}"), position)
+    }
+
+    fn filter(&mut self, name: Dynamic, parameters: Option<Dynamic>, form: &str) -> Result<()> {
+        let mut filter = FilterSettings { name: self.word(name, form)?, parameters: Vec::new() };
+        let stage = format!("filter:{}", self.settings.filters.len());
+        self.mark(stage.clone(), self.call)?;
+        let parameters = parameters.unwrap_or_else(|| Map::new().into());
+        let Some(parameters) = parameters.try_cast::<Map>() else {
+            return self.wrong(
+                self.call,
+                "a filter needs its parameters by name".to_owned(),
+                "found something else",
+                form,
+            );
+        };
+        for (key, value) in parameters {
+            let (_, position) = self.entry(&key);
+            match number(&value).filter(|number| number.is_finite()) {
+                Some(number) => filter.parameters.push((key.to_string(), number)),
+                None => {
+                    let message = format!("the parameter '{}' must be a number", printable(&key));
+                    return self.wrong(position, message, "found something else", form);
+                }
+            }
+            self.mark(format!("{stage}.{key}"), position)?;
+        }
+        self.settings.filters.push(filter);
+        Ok(())
+    }
+
+    fn actions(&self, actions: Dynamic) -> Result<Vec<Twist>> {
+        let form = "actions([[0.4, 0.2], [0.4, 0.0]]); with forward speed in m/s and turning speed in rad/s";
+        let list = actions.into_array().unwrap_or_default();
+        if list.is_empty() || list.len() > MAX_ACTIONS {
+            let message = format!("there must be 1 to {MAX_ACTIONS} actions, found {}", list.len());
+            return self.wrong(self.call, message, "set here", form);
+        }
+        let mut twists = Vec::new();
+        for (index, action) in list.into_iter().enumerate() {
+            let pair = action.into_array().unwrap_or_default();
+            let [Some(linear), Some(angular)] = pair.iter().map(number).collect::<Vec<_>>()[..] else {
+                return self.wrong(self.call, format!("action {index} is not a pair of numbers"), "set here", form);
+            };
+            let within = |value: f64, most: f64| (-most..=most).contains(&value);
+            if !within(linear, MAX_LINEAR) || !within(angular, MAX_ANGULAR) {
+                let message = format!(
+                    "action {index} is [{linear}, {angular}]: at most {MAX_LINEAR} m/s and {MAX_ANGULAR} rad/s, either way"
+                );
+                return self.wrong(self.call, message, "set here", form);
+            }
+            twists.push(Twist::new(linear, angular));
+        }
+        Ok(twists)
+    }
+
+    /// Where a key and its value stand in the map of the present call; the call itself if they are not written there.
+    fn entry(&self, key: &str) -> (Position, Position) {
+        let mut found = (self.call, self.call);
+        self.ast.walk(&mut |path: &[ASTNode<'_>]| {
+            let call: &FnCallExpr = match path.last() {
+                Some(ASTNode::Stmt(Stmt::FnCall(call, position)) | ASTNode::Expr(Expr::FnCall(call, position)))
+                    if *position == self.call =>
+                {
+                    call
+                }
+                _ => return true,
+            };
+            for argument in &call.args {
+                if let Expr::Map(map, _) = argument
+                    && let Some((ident, value)) = map.0.iter().find(|(ident, _)| ident.name.as_str() == key)
+                {
+                    found = (ident.pos, value.start_position());
+                }
+            }
+            false
+        });
+        found
+    }
+}

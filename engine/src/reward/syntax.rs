@@ -1,0 +1,110 @@
+//! The form of a rule: `rule "name" when CONDITION [for N steps | for N seconds] => VALUE [then recover];`
+
+use rhai::{CustomExpr, Dynamic, Engine, Expr, ImmutableString, LexError, ParseError, Position, Stmt};
+
+/// Marks an error message as ours: it is shown as it stands.
+pub(super) const OURS: &str = "rule";
+
+/// The unit of a persistence.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum TimeUnit {
+    Steps,
+    Seconds,
+}
+
+/// A rule as it stands in the script's tree.
+#[derive(Debug)]
+pub(super) struct WrittenRule<'a> {
+    pub name: &'a str,
+    pub name_position: Position,
+    pub position: Position,
+    pub condition: &'a Expr,
+    pub time: Option<(&'a Expr, TimeUnit)>,
+    pub value: &'a Expr,
+    pub recover: bool,
+    /// How many top-level variables stand before it.
+    pub variables: usize,
+}
+
+/// Teaches the form to an engine. Running a rule does nothing: rules are read from the tree.
+pub(super) fn register(engine: &mut Engine) {
+    engine.register_custom_syntax_with_state_raw("rule", next, false, |_, _, _| Ok(Dynamic::UNIT));
+}
+
+type Next = Result<Option<ImmutableString>, ParseError>;
+
+fn expect(word: &str, ahead: &str, message: &str) -> Next {
+    if ahead == word { Ok(Some(word.into())) } else { wrong(message) }
+}
+
+fn wrong(message: &str) -> Next {
+    Err(LexError::ImproperSymbol(OURS.to_owned(), message.to_owned()).into_err(Position::NONE))
+}
+
+fn next(symbols: &[ImmutableString], ahead: &str, _: &mut Dynamic) -> Next {
+    let expression = || Ok(Some("$expr$".into()));
+    let Some(tail) = symbols.get(2..) else {
+        return match ahead.starts_with('"') {
+            true => Ok(Some("$string$".into())),
+            false => wrong("a rule needs a name in quotes: rule \"too close\" when ..."),
+        };
+    };
+    let before = tail.len().checked_sub(2).map_or("", |index| tail[index].as_str());
+    match (tail.last().map_or("", |last| last.as_str()), before) {
+        ("", _) => expect("when", ahead, "after the rule's name comes 'when' and a condition"),
+        ("when", _) if matches!(ahead, "for" | "=>" | ";") => wrong("after 'when' comes a condition"),
+        ("when", _) => expression(),
+        ("for", _) => expression(),
+        ("=>", _) if matches!(ahead, "then" | ";" | "{EOF}") => {
+            wrong("this rule has no value: after '=>' comes a number, such as -1")
+        }
+        ("=>", _) => expression(),
+        ("$expr$", "when") if ahead == "for" => Ok(Some("for".into())),
+        ("$expr$", "when") => {
+            expect("=>", ahead, "after the condition comes 'for N steps', 'for N seconds', or '=>' and a value")
+        }
+        ("$expr$", "for") if matches!(ahead, "steps" | "step" | "seconds" | "second") => Ok(Some(ahead.into())),
+        ("$expr$", "for") => wrong("a time needs its unit: 'for 10 steps' or 'for 5 seconds'"),
+        ("$expr$", "=>") if ahead == "then" => Ok(Some("then".into())),
+        ("$expr$", "=>") => Ok(None),
+        ("steps" | "step" | "seconds" | "second", _) => {
+            expect("=>", ahead, "this rule has no value: after the time comes '=>' and a number, such as -1")
+        }
+        ("then", _) => expect("recover", ahead, "after 'then' comes 'recover'"),
+        _ => Ok(None),
+    }
+}
+
+/// The rules that stand at the top level, in their order.
+pub(super) fn written_rules(statements: &[Stmt]) -> Vec<WrittenRule<'_>> {
+    let mut variables = 0;
+    let mut rules = Vec::new();
+    for statement in statements {
+        match statement {
+            Stmt::Var(variable, ..) if variable.2.is_none() => variables += 1,
+            Stmt::Expr(expr) => {
+                if let Expr::Custom(custom, position) = &**expr {
+                    rules.extend(read(custom, *position, variables));
+                }
+            }
+            _ => {}
+        }
+    }
+    rules
+}
+
+fn read(custom: &CustomExpr, position: Position, variables: usize) -> Option<WrittenRule<'_>> {
+    let (Expr::StringConstant(name, name_position), rest) = custom.inputs.split_first()? else {
+        return None;
+    };
+    let word = |wanted: &[&str]| custom.tokens.iter().skip(2).any(|token| wanted.contains(&token.as_str()));
+    let unit = if word(&["seconds", "second"]) { TimeUnit::Seconds } else { TimeUnit::Steps };
+    let (condition, time, value) = match rest {
+        [condition, value] => (condition, None, value),
+        [condition, time, value] => (condition, Some((time, unit)), value),
+        _ => return None,
+    };
+    let recover = word(&["recover"]);
+    let name_position = *name_position;
+    Some(WrittenRule { name, name_position, position, condition, time, value, recover, variables })
+}

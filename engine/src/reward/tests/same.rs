@@ -1,0 +1,1 @@
+//! Native rules and interpreted ones give the same, and cost what they may.
