@@ -80,7 +80,8 @@ impl Plan {
     pub fn chain(&self) -> Result<Chain> {
         let camera = &self.settings.camera;
         Chain::new(&self.settings.filters, camera.width_px as usize, camera.height_px as usize).map_err(|error| {
-            let place = format!("filter:{}", error.stage);
+            let stage = format!("filter:{}", error.stage);
+            let place = error.parameter.map_or(stage.clone(), |parameter| format!("{stage}.{parameter}"));
             self.point(Diagnostic::new(Kind::Input, "E-FILTER-SETTING", error.message), &place, "here", error.help)
         })
     }

@@ -25,6 +25,8 @@ struct Stage {
 pub struct ChainError {
     /// The stage's index in the settings.
     pub stage: usize,
+    /// The parameter at fault, if it is one.
+    pub parameter: Option<String>,
     /// What is wrong.
     pub message: String,
     /// What to write instead.
@@ -42,7 +44,7 @@ impl Chain {
         let mut stages: Vec<Stage> = Vec::with_capacity(settings.len());
         let mut format = Format::Rgb;
         for (index, filter) in settings.iter().enumerate() {
-            let fail = |(message, help)| ChainError { stage: index, message, help };
+            let fail = |(message, help)| ChainError { stage: index, parameter: None, message, help };
             let plugin = registry::find(&filter.name)
                 .map_err(|help| fail((format!("there is no filter '{}'", printable(&filter.name)), Some(help))))?;
             let descriptor = plugin.descriptor;
@@ -51,7 +53,7 @@ impl Chain {
                     format!("filter '{}' reads {}, not {}", filter.name, names(descriptor.reads), name(format));
                 return Err(fail((message, Some("put it earlier in the chain".to_owned()))));
             }
-            let values = values(&filter.name, descriptor.parameters, &filter.parameters).map_err(fail)?;
+            let values = values(index, filter, descriptor.parameters)?;
             let filter = (plugin.create)(&values).map_err(|FilterError(message)| fail((message, None)))?;
             format = descriptor.writes;
             stages.push(Stage { plugin, filter, output: vec![0; width_px * height_px * format.channels()] });
@@ -59,7 +61,7 @@ impl Chain {
         if format != Format::Mask {
             let message = format!("the last filter writes {}, but the grid needs a mask", name(format));
             let help = Some("end the chain with a filter that writes a mask, such as sobel or colour".to_owned());
-            return Err(ChainError { stage: settings.len() - 1, message, help });
+            return Err(ChainError { stage: settings.len() - 1, parameter: None, message, help });
         }
         Ok(Self { stages, width_px, height_px })
     }
@@ -89,21 +91,22 @@ impl Chain {
     }
 }
 
-fn values(filter: &str, parameters: &[Parameter], set: &[(String, f64)]) -> Result<Vec<f64>, (String, Option<String>)> {
+fn values(stage: usize, filter: &FilterSettings, parameters: &[Parameter]) -> Result<Vec<f64>, ChainError> {
     let mut values: Vec<f64> = parameters.iter().map(|parameter| parameter.default).collect();
-    for (key, value) in set {
+    for (key, value) in &filter.parameters {
+        let fail = |message, help| ChainError { stage, parameter: Some(key.clone()), message, help: Some(help) };
         let Some(index) = parameters.iter().position(|parameter| parameter.name == key) else {
             let names = parameters.iter().map(|parameter| parameter.name);
             let help = match nearest_name(key, names.clone()) {
                 Some(near) => format!("did you mean '{near}'?"),
                 None => format!("it has: {}", names.collect::<Vec<_>>().join(", ")),
             };
-            return Err((format!("filter '{filter}' has no parameter '{}'", printable(key)), Some(help)));
+            return Err(fail(format!("filter '{}' has no parameter '{}'", filter.name, printable(key)), help));
         };
         let Parameter { min, max, unit, default, .. } = parameters[index];
         if !(min..=max).contains(value) {
-            let message = format!("'{key}' of filter '{filter}' must be {min} to {max} ({unit}), found {value}");
-            return Err((message, Some(format!("the default is {default}"))));
+            let message = format!("'{key}' of filter '{}' must be {min} to {max} ({unit})", filter.name);
+            return Err(fail(message, format!("the default is {default}")));
         }
         values[index] = *value;
     }

@@ -89,7 +89,7 @@ mod tests {
         assert_eq!(table.values(), [-1.0; 4]);
         ttd.learn(&mut table, &step(2, -1.0, 3));
         // z = -1; -1 + 0.99 * -1 = -1.99; 0.99 * (0.9 * -1.99 + 0.1 * -1) = -1.87209; again: -1.767_032_19
-        let value = 0.99 * (0.9 * (0.99 * (0.9 * -1.99 + 0.1 * -1.0)) + 0.1 * -1.0);
+        let value = 0.99 * (0.9 * (0.99 * (0.9 * -1.99 - 0.1)) - 0.1);
         assert!((value - -1.767_032_19_f64).abs() < 1e-9);
         assert!((table.value(0, 0) - (-1.0 + 0.2 * (value + 1.0))).abs() < 1e-12);
         assert_eq!(table.value(1, 0), -1.0);
@@ -112,6 +112,6 @@ mod tests {
         ttd.learn(&mut table, &step(1, -1.0, 2));
         ttd.forget(&mut table);
         assert!((table.value(1, 0) - -0.2).abs() < 1e-12);
-        assert!((table.value(0, 0) - 0.2 * (-1.0 + 0.99 * 0.9 * -1.0)).abs() < 1e-12);
+        assert!((table.value(0, 0) - 0.2 * (-1.0 - 0.99 * 0.9)).abs() < 1e-12);
     }
 }

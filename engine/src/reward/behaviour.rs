@@ -7,7 +7,7 @@ use super::judge::Judge;
 use super::rule::{Rule, RuleText};
 use super::setup::{self, Log, Places};
 use super::source::{self, Code};
-use super::{names, reach, rehearsal, sandbox, syntax};
+use super::{names, reach, rehearsal, running, sandbox, syntax};
 use crate::diagnostic::{Diagnostic, Kind, Result, SourceText, printable};
 use crate::settings::Settings;
 use rhai::{AST, Dynamic, Engine, Module, Position, Scope, Stmt};
@@ -63,7 +63,7 @@ impl Behaviour {
         names::check(&code, &ast, &mut needs)?;
         let mut constants = Scope::new();
         let ran = engine.run_ast_with_scope(&mut constants, &ast);
-        ran.map_err(|error| Box::new(explain::running(&code.source, &error)))?;
+        ran.map_err(|error| Box::new(running::explain(&code.source, &error)))?;
         let (settings, places) = setup::finish(&log, &code, &ast)?;
         engine.register_global_module(constants_module(&constants).into());
         let rules = rules(&code, &ast, &constants, &mut needs)?;

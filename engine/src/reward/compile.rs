@@ -3,7 +3,7 @@
 use super::chain::{Chain, Link};
 use super::expression::{Arithmetic, Comparison, Flag, Number};
 use super::fact_table::{self, Getter, Reach, SECTOR};
-use super::functions::{OF_ONE, OF_ONE_FRACTION, OF_TWO, OF_TWO_FRACTION};
+use super::functions::{OF_ONE, OF_ONE_FRACTION, OF_TWO, OF_TWO_FRACTION, OneArgument, TwoArguments};
 use rhai::{Expr, FnCallExpr, Position, Scope};
 
 /// A native tree with its kind. Whole numbers are told apart because their division and overflow differ.
@@ -42,8 +42,8 @@ pub(super) struct Compiler<'a> {
     pub needs: &'a mut Needs,
 }
 
-// Up to here a whole number and its floating-point form are the same.
-const EXACT: i64 = 1 << 53;
+// Up to here whole numbers and their floating-point forms are equal, or not, alike.
+const EXACT: i64 = 1 << 50;
 
 impl Compiler<'_> {
     /// The native form of a whole condition or value, if all of it is understood.
@@ -213,7 +213,7 @@ impl Compiler<'_> {
     }
 
     fn call_of_one(&mut self, name: &str, of: &Expr) -> Option<Typed> {
-        let find = |list: &[(&str, fn(f64) -> f64)]| list.iter().find(|row| row.0 == name).map(|row| row.1);
+        let find = |list: &[(&str, OneArgument)]| list.iter().find(|row| row.0 == name).map(|row| row.1);
         match (name, self.expression(of)?) {
             ("!", Typed::Flag(flag)) => Some(Typed::Flag(Flag::Not(Box::new(flag)))),
             ("-", Typed::Number(number)) => Some(Typed::Number(Number::Negate(Box::new(number)))),
@@ -228,7 +228,7 @@ impl Compiler<'_> {
     }
 
     fn call_of_two(&mut self, name: &str, a: &Expr, b: &Expr) -> Option<Typed> {
-        let find = |list: &[(&str, fn(f64, f64) -> f64)]| list.iter().find(|row| row.0 == name).map(|row| row.1);
+        let find = |list: &[(&str, TwoArguments)]| list.iter().find(|row| row.0 == name).map(|row| row.1);
         if let Some(function) = find(OF_TWO) {
             let pair = Box::new([self.number(a)?, self.number(b)?]);
             return Some(Typed::Number(Number::OfTwo(function, pair)));

@@ -1,4 +1,4 @@
-//! The interpreter's errors in plain words, in the user's own line.
+//! The parser's errors and unknown names in plain words, in the user's own line.
 
 use super::fact_table::{GROUPS, OTHER_NAMES, names_in};
 use super::functions::FUNCTIONS;
@@ -6,7 +6,7 @@ use super::sandbox;
 use super::setup::SETUP;
 use super::syntax::OURS;
 use crate::diagnostic::{Diagnostic, Kind, SourceText, nearest_name, printable};
-use rhai::{EvalAltResult, LexError, ParseError, ParseErrorType, Position};
+use rhai::{LexError, ParseError, ParseErrorType, Position};
 
 /// The byte offset of a position; the end if it has none.
 pub(super) fn offset(source: &SourceText, position: Position) -> usize {
@@ -37,7 +37,9 @@ pub(super) fn syntax(source: &SourceText, error: &ParseError, own_names: &[Strin
             mistake(source, "E-SCRIPT-RULE", *position, message, "found this")
         }
         ParseErrorType::VariableUndefined(name) => unknown_name(source, *position, name, own_names),
-        ParseErrorType::Reserved(word) | ParseErrorType::BadInput(LexError::ImproperSymbol(word, _)) => {
+        ParseErrorType::Reserved(word)
+        | ParseErrorType::UnknownOperator(word)
+        | ParseErrorType::BadInput(LexError::ImproperSymbol(word, _)) => {
             let help = match word.as_str() {
                 "**" | "**=" => "write pow(x, y), or x * x",
                 "print" | "debug" => "`engine check` shows the facts and the rules that fire",
@@ -58,17 +60,9 @@ pub(super) fn syntax(source: &SourceText, error: &ParseError, own_names: &[Strin
             at(format!("'{}' is missing here", printable(token)), "expected before this")
         }
         ParseErrorType::ExprExpected(_) => at("a value or a condition is missing here".to_owned(), "found this"),
-        ParseErrorType::ExprTooDeep => {
-            let message = format!("brackets or operators are nested too deep: at most {}", sandbox::MAX_NESTING);
-            let mut diagnostic = mistake(source, "E-SCRIPT-LIMIT", *position, message, "too deep here");
-            diagnostic.kind = Kind::Limit;
-            diagnostic.help("split the expression: let part = ...;")
-        }
-        ParseErrorType::TooManyFunctions => {
-            limit(source, *position, format!("a script may have {} functions", sandbox::MAX_FUNCTIONS))
-        }
-        ParseErrorType::LiteralTooLarge(_, most) => {
-            limit(source, *position, format!("this is too long: at most {most}"))
+        kind if let Some(most) = most_of(kind) => limit(source, *position, most),
+        ParseErrorType::PropertyExpected => {
+            at("after '.' comes the name of a fact or a function".to_owned(), "this is neither")
         }
         ParseErrorType::VariableExists(name) => {
             at(format!("'{}' is defined twice", printable(name)), "the second time").help("choose another name")
@@ -91,7 +85,18 @@ pub(super) fn syntax(source: &SourceText, error: &ParseError, own_names: &[Strin
     }
 }
 
-fn unknown_name(source: &SourceText, position: Position, name: &str, own_names: &[String]) -> Diagnostic {
+fn most_of(kind: &ParseErrorType) -> Option<String> {
+    Some(match kind {
+        ParseErrorType::ExprTooDeep => {
+            format!("brackets or operators are nested too deep: at most {}", sandbox::MAX_NESTING)
+        }
+        ParseErrorType::TooManyFunctions => format!("a script may have {} functions", sandbox::MAX_FUNCTIONS),
+        ParseErrorType::LiteralTooLarge(_, most) => format!("this is too long: at most {most}"),
+        _ => return None,
+    })
+}
+
+pub(super) fn unknown_name(source: &SourceText, position: Position, name: &str, own_names: &[String]) -> Diagnostic {
     let message = format!("there is nothing called '{}'", printable(name));
     let known = GROUPS.iter().map(|(group, _)| *group).chain(["facts", "calibrated"]);
     let diagnostic = mistake(source, "E-SCRIPT-NAME", position, message, "not known");
@@ -132,99 +137,10 @@ pub(super) fn unknown_function(source: &SourceText, position: Position, name: &s
     }
 }
 
-fn limit(source: &SourceText, position: Position, message: String) -> Diagnostic {
+pub(super) fn limit(source: &SourceText, position: Position, message: String) -> Diagnostic {
     let mut diagnostic = mistake(source, "E-SCRIPT-LIMIT", position, message, "stopped here");
     diagnostic.kind = Kind::Limit;
     diagnostic
-}
-
-/// An error while the script ran.
-pub(super) fn running(source: &SourceText, error: &EvalAltResult) -> Diagnostic {
-    use EvalAltResult as E;
-    let at = |code, position: &Position, message: String| mistake(source, code, *position, message, "here");
-    match error {
-        E::ErrorInFunctionCall(_, _, inner, position) if inner.position().is_none() => {
-            let mut inner = running(source, inner);
-            let span = source.word_at(offset(source, *position));
-            inner = inner.at(source, span, "here");
-            inner
-        }
-        E::ErrorInFunctionCall(_, _, inner, _) => running(source, inner),
-        E::ErrorTooManyOperations(position) => {
-            let message = format!("the script was stopped after {} operations", sandbox::MAX_OPERATIONS);
-            limit(source, *position, message)
-                .help("look for a loop that does not end; a step has a handful of operations to spend")
-        }
-        E::ErrorStackOverflow(position) => {
-            let message = format!("functions call one another too deep: at most {}", sandbox::MAX_CALL_LEVELS);
-            limit(source, *position, message).help("look for a function that calls itself")
-        }
-        E::ErrorDataTooLarge(what, position) => {
-            let (what, most) = match what.to_lowercase() {
-                what if what.contains("string") => ("a text", sandbox::MAX_TEXT_BYTES),
-                what if what.contains("map") => ("a map", sandbox::MAX_MAP),
-                _ => ("an array", sandbox::MAX_ARRAY),
-            };
-            limit(source, *position, format!("{what} has grown too large: at most {most}"))
-        }
-        E::ErrorTooManyVariables(position) => {
-            limit(source, *position, format!("there are too many variables: at most {}", sandbox::MAX_VARIABLES))
-        }
-        E::ErrorVariableNotFound(name, position) => unknown_name(source, *position, name, &[]),
-        E::ErrorFunctionNotFound(signature, position) => wrong_types(source, *position, signature),
-        E::ErrorDotExpr(message, position) => {
-            let mut quoted = message.split('\'').skip(1).step_by(2);
-            match (quoted.next(), quoted.next()) {
-                (Some(key), Some(group)) if !names_in(group).is_empty() => unknown_fact(source, *position, group, key),
-                (Some(key), Some(kind)) => at(
-                    "E-SCRIPT-FACT",
-                    position,
-                    format!("{} has nothing called '{}'", plain_kind(kind), printable(key)),
-                ),
-                _ => at("E-SCRIPT-FACT", position, "this has no such part".to_owned()),
-            }
-        }
-        E::ErrorPropertyNotFound(key, position) => {
-            at("E-SCRIPT-RUN", position, format!("the map has no key '{}'", printable(key)))
-        }
-        E::ErrorArrayBounds(count, index, position) => {
-            at("E-SCRIPT-RUN", position, format!("the array has {count} values: there is no number {index}"))
-        }
-        E::ErrorMismatchDataType(wanted, found, position) => {
-            let (wanted, found) = (plain_kind(wanted), plain_kind(found));
-            at("E-SCRIPT-NAME", position, format!("this must be {wanted}, found {found}"))
-        }
-        E::ErrorIndexingType(kind, position) => {
-            let kind = kind.split(' ').next().unwrap_or_default();
-            at("E-SCRIPT-FACT", position, format!("{} cannot be read with [ ]", plain_kind(kind)))
-        }
-        E::ErrorFor(position) => {
-            at("E-SCRIPT-NAME", position, "a loop needs a range or an array: for i in 0..9".to_owned())
-        }
-        E::ErrorRuntime(value, position) => at(
-            "E-SCRIPT-RUN",
-            position,
-            printable(&value.clone().into_string().unwrap_or_else(|kind| format!("stopped with {kind}"))),
-        ),
-        E::ErrorArithmetic(message, position) => at("E-SCRIPT-RUN", position, lower(&printable(message))),
-        E::ErrorAssignmentToConstant(name, position) => {
-            at("E-SCRIPT-SYNTAX", position, format!("'{}' is read-only", printable(name)))
-        }
-        other => at("E-SCRIPT-RUN", &other.position(), lower(&printable(&other.to_string()))),
-    }
-}
-
-fn wrong_types(source: &SourceText, position: Position, signature: &str) -> Diagnostic {
-    let (name, kinds) = signature.split_once(" (").unwrap_or((signature, ""));
-    let kinds: Vec<_> =
-        kinds.trim_end_matches(')').split(", ").filter(|kind| !kind.is_empty()).map(plain_kind).collect();
-    let with = if kinds.is_empty() { "without arguments".to_owned() } else { format!("with {}", kinds.join(" and ")) };
-    let message = format!("'{}' cannot be used {with}", printable(name));
-    let diagnostic = mistake(source, "E-SCRIPT-NAME", position, message, "here");
-    match FUNCTIONS.iter().find(|row| row.name == name) {
-        Some(row) => diagnostic.help(format!("write {}", row.form)),
-        None => diagnostic,
-    }
 }
 
 /// A kind of value in plain words.
@@ -246,7 +162,7 @@ pub(super) fn plain_kind(kind: &str) -> String {
     }
 }
 
-fn lower(text: &str) -> String {
+pub(super) fn lower(text: &str) -> String {
     let mut chars = text.chars();
     chars.next().map_or(String::new(), |first| first.to_lowercase().chain(chars).collect())
 }

@@ -69,10 +69,19 @@ pub(super) enum Flag {
 }
 
 impl Number {
+    // Most rules compare a fact with a constant: these two are worth a way of their own, without a call.
+    #[inline]
     pub(super) fn value(&self, inputs: Inputs<'_>) -> f64 {
         match self {
             Self::Constant(value) => *value,
             Self::Fact(get, _) => get(inputs.facts),
+            tree => tree.branch(inputs),
+        }
+    }
+
+    fn branch(&self, inputs: Inputs<'_>) -> f64 {
+        match self {
+            Self::Constant(_) | Self::Fact(..) => self.value(inputs),
             Self::Whole(get) => get(inputs.facts) as f64,
             Self::Beam(beam) => inputs.facts.beam_m(*beam),
             Self::Cell(row, column) => inputs.facts.cell(*row, *column),
@@ -157,8 +166,18 @@ impl Comparison {
             Self::LessOrEqual => a <= b,
             Self::Greater => a > b,
             Self::GreaterOrEqual => a >= b,
-            Self::Equal => a == b,
-            Self::Unequal => a != b,
+            Self::Equal => distance(a, b) <= f64::EPSILON,
+            Self::Unequal => distance(a, b) > f64::EPSILON,
         }
     }
+}
+
+/// The interpreter's measure of equality: numbers that differ by rounding only are equal, and NaN is neither.
+fn distance(a: f64, b: f64) -> f64 {
+    let scale = if a * b == 0.0 { 1.0 } else { larger(a.abs(), b.abs()) };
+    if scale == 0.0 { 0.0 } else { (a - b).abs() / scale }
+}
+
+fn larger(a: f64, b: f64) -> f64 {
+    if b > a || a.is_nan() { b } else { a }
 }

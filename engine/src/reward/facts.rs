@@ -69,7 +69,9 @@ impl Facts {
 /// 0.2 m would not be `<= 0.2`.
 #[must_use]
 pub fn decimal(measured: f32) -> f64 {
-    (f64::from(measured) * 1e6).round() / 1e6
+    // Adding and taking away 1.5 * 2^52 rounds to a whole number, several times faster than `round`.
+    const ROUND: f64 = 6_755_399_441_055_744.0;
+    (f64::from(measured) * 1e6 + ROUND - ROUND) / 1e6
 }
 
 /// The least of some ranges, metres; infinite if there are none.
@@ -103,17 +105,19 @@ pub fn excess(ranges_m: &[f32], expected_m: &[f64]) -> f64 {
     differences.fold(f64::NEG_INFINITY, |a, b| if b > a { b } else { a })
 }
 
-// Eight running values instead of one: the compiler makes one vector instruction of them. The order of the comparisons
-// does not change the result, because ranges are never NaN.
+// Eight running values instead of one: the compiler makes vector instructions of them. The order of the comparisons does
+// not change the result, because ranges are never NaN.
 fn fold(values: &[f32], start: f32, choose: impl Fn(f32, f32) -> f32) -> f32 {
-    let mut lanes = [start; 8];
-    let (chunks, rest) = values.as_chunks::<8>();
+    const LANES: usize = 8;
+    let mut lanes = [start; LANES];
+    let (chunks, rest) = values.as_chunks::<LANES>();
     for chunk in chunks {
-        for (lane, &value) in lanes.iter_mut().zip(chunk) {
-            *lane = choose(*lane, value);
+        for lane in 0..LANES {
+            lanes[lane] = choose(lanes[lane], chunk[lane]);
         }
     }
-    lanes.into_iter().chain(rest.iter().copied()).fold(start, choose)
+    let first = lanes.into_iter().fold(start, &choose);
+    rest.iter().copied().fold(first, choose)
 }
 
 #[cfg(test)]
@@ -137,8 +141,8 @@ mod tests {
 
     #[test]
     fn least_and_greatest_look_at_every_value() {
-        for at in 0..19 {
-            let mut ranges = vec![2.0; 19];
+        for at in 0..37 {
+            let mut ranges = vec![2.0; 37];
             ranges[at] = 1.0;
             assert_eq!((least(&ranges), greatest(&ranges)), (1.0, 2.0));
             ranges[at] = 3.0;

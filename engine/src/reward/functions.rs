@@ -60,8 +60,10 @@ pub const FUNCTIONS: &[Function] = &[
     },
 ];
 
-type OneArgument = fn(f64) -> f64;
-type TwoArguments = fn(f64, f64) -> f64;
+/// A function of one number.
+pub(super) type OneArgument = fn(f64) -> f64;
+/// A function of two numbers.
+pub(super) type TwoArguments = fn(f64, f64) -> f64;
 
 /// Functions from one number to one with a fraction.
 pub(super) const OF_ONE: &[(&str, OneArgument)] = &[

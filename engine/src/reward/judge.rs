@@ -1,14 +1,13 @@
 //! One run's judging: refilled facts in, one verdict for each step out.
 
-use super::behaviour::{Loaded, variable};
+use super::behaviour::Loaded;
+use super::evaluate::Present;
 use super::explain;
-use super::expression::{Inputs, Slot};
+use super::expression::Slot;
 use super::facts::Facts;
-use super::rule::{Clause, Rule, ScriptClause};
-use super::views::{All, number, view, wrong_length};
-use crate::diagnostic::{Diagnostic, Kind, Result, nearest_name, printable};
-use rhai::{CallFnOptions, Dynamic, Map, Scope};
-use std::ops::Range;
+use super::views::{number, wrong_length};
+use crate::diagnostic::{Diagnostic, Kind, Result};
+use rhai::{Dynamic, Map};
 use std::sync::Arc;
 
 /// The verdict on one step.
@@ -23,15 +22,12 @@ pub struct Verdict {
 /// One run's judging of a behaviour: counters, and what was calibrated.
 #[derive(Debug)]
 pub struct Judge {
-    loaded: Arc<Loaded>,
-    facts: Arc<Facts>,
+    present: Present,
     beams: usize,
     /// For each rule, how many steps its condition must hold.
     needed: Vec<u32>,
     held: Vec<u32>,
     fired: Vec<Option<f64>>,
-    calibrated: Option<Arc<Dynamic>>,
-    slots: Vec<Slot>,
 }
 
 impl Judge {
@@ -41,19 +37,20 @@ impl Judge {
         let facts = Arc::new(Facts { ranges_m: vec![0.0; beams], ..Facts::default() });
         let calibrated = loaded.calibrate.is_none().then(Arc::default);
         let (held, fired) = (vec![0; needed.len()], vec![None; entries]);
-        Self { loaded, facts, beams, needed, held, fired, calibrated, slots: Vec::new() }
+        let present = Present { loaded, facts, calibrated, slots: Vec::new() };
+        Self { present, beams, needed, held, fired }
     }
 
     /// The facts of the last step.
     #[must_use]
     pub fn facts(&self) -> &Facts {
-        &self.facts
+        &self.present.facts
     }
 
     /// The measurements of the present step, to be refilled in place.
     pub fn facts_mut(&mut self) -> &mut Facts {
         // No script value outlives its step, so that this never copies.
-        Arc::make_mut(&mut self.facts)
+        Arc::make_mut(&mut self.present.facts)
     }
 
     /// Runs `fn calibrate(facts)` on the present facts, if there is one; rules read its result as `calibrated`.
@@ -61,9 +58,11 @@ impl Judge {
     /// # Errors
     /// If it fails, or its result is not what the rules need.
     pub fn calibrate(&mut self) -> Result<()> {
-        let Some(span) = self.loaded.calibrate.clone() else { return Ok(()) };
-        let result = plain(self.call("calibrate")?);
-        let source = &self.loaded.code.source;
+        let present = &mut self.present;
+        let loaded = Arc::clone(&present.loaded);
+        let source = &loaded.code.source;
+        let Some(span) = loaded.calibrate.clone() else { return Ok(()) };
+        let result = plain(present.call("calibrate")?);
         let is_kept = number(&result).is_some() || result.is_bool() || result.is_array() || result.is_map();
         if !is_kept {
             let found = explain::plain_kind(result.type_name());
@@ -75,9 +74,9 @@ impl Judge {
             .at(source, span, "defined here")
             .into();
         }
-        self.slots = self.loaded.needs.slots.iter().map(|key| slot(&result, key)).collect();
-        for wanted in &self.loaded.needs.slot_uses {
-            let message = match (&self.slots[wanted.slot], wanted.length) {
+        present.slots = loaded.needs.slots.iter().map(|key| slot(&result, key)).collect();
+        for wanted in &loaded.needs.slot_uses {
+            let message = match (&present.slots[wanted.slot], wanted.length) {
                 (Slot::Number(_), None) => continue,
                 (Slot::Numbers(values), Some(length)) if values.len() == length => continue,
                 (Slot::Numbers(values), Some(length)) => wrong_length(length, values.len()),
@@ -86,7 +85,7 @@ impl Judge {
             };
             return explain::mistake(source, "E-SCRIPT-REWARD", wanted.position, message, "needed here").into();
         }
-        self.calibrated = Some(Arc::new(result));
+        present.calibrated = Some(Arc::new(result));
         Ok(())
     }
 
@@ -96,36 +95,37 @@ impl Judge {
     /// If the script fails or is stopped, or a value is not a finite number: in its line of the script.
     pub fn judge(&mut self) -> Result<Verdict> {
         self.check_facts()?;
-        self.fired.fill(None);
+        let Self { present, held, needed, fired, .. } = self;
+        fired.fill(None);
         let mut verdict = Verdict::default();
-        let loaded = Arc::clone(&self.loaded);
-        for (index, rule) in loaded.rules.iter().enumerate() {
-            if !self.condition(rule)? {
-                self.held[index] = 0;
+        let rules = &present.loaded.rules;
+        for (index, rule) in rules.iter().enumerate() {
+            if !present.condition(rule)? {
+                held[index] = 0;
                 continue;
             }
-            self.held[index] += 1;
-            if self.held[index] < self.needed[index] {
+            held[index] += 1;
+            if held[index] < needed[index] {
                 continue;
             }
-            self.held[index] = 0;
-            let value = self.value(rule)?;
+            held[index] = 0;
+            let value = present.value(rule)?;
             if !value.is_finite() {
-                return self.not_finite(&rule.shown(), value, rule.value_span.clone()).into();
+                return present.not_finite(&rule.shown(), value, rule.value_span.clone()).into();
             }
-            self.fired[index] = Some(value);
+            fired[index] = Some(value);
             verdict.reward += value;
             if rule.recover {
                 verdict.recover = true;
                 return Ok(verdict);
             }
         }
-        if let Some(span) = &loaded.reward {
-            let own = self.reward(span)?;
+        if let Some(span) = &present.loaded.reward {
+            let own = present.reward(span)?;
             if !own.reward.is_finite() {
-                return self.not_finite("'fn reward'", own.reward, span.clone()).into();
+                return present.not_finite("'fn reward'", own.reward, span.clone()).into();
             }
-            self.fired[loaded.rules.len()] = Some(own.reward);
+            fired[rules.len()] = Some(own.reward);
             verdict.reward += own.reward;
             verdict.recover = own.recover;
         }
@@ -145,131 +145,19 @@ impl Judge {
 
     fn check_facts(&self) -> Result<()> {
         let wrong = |message: String| Diagnostic::new(Kind::State, "E-REWARD-FACTS", message);
-        if self.facts.ranges_m.len() != self.beams {
-            let message = format!("the judge was made for {} beams, found {}", self.beams, self.facts.ranges_m.len());
+        if self.present.facts.ranges_m.len() != self.beams {
+            let message =
+                format!("the judge was made for {} beams, found {}", self.beams, self.present.facts.ranges_m.len());
             return wrong(message).into();
         }
-        if self.calibrated.is_none() {
+        if self.present.calibrated.is_none() {
             return wrong("the script has not been calibrated yet".to_owned()).into();
         }
-        self.loaded.check_cells(self.facts.grid)
+        self.present.loaded.check_cells(self.present.facts.grid)
     }
 
-    fn not_finite(&self, what: &str, value: f64, span: Range<usize>) -> Diagnostic {
-        let value = if value.is_nan() { "no number (NaN)".to_owned() } else { value.to_string() };
-        let message = format!("{what} gave {value} as its value");
-        Diagnostic::new(Kind::Input, "E-REWARD-VALUE", message)
-            .at(&self.loaded.code.source, span, format!("gave {value}"))
-            .help("look for a division by 0, or the root or logarithm of a negative number")
-    }
-
-    fn inputs(&self) -> Inputs<'_> {
-        Inputs { facts: &self.facts, slots: &self.slots }
-    }
-
-    pub(super) fn condition(&self, rule: &Rule) -> Result<bool> {
-        let script = match &rule.condition {
-            Clause::Native(flag) => return Ok(flag.holds(self.inputs())),
-            Clause::Script(script) => script,
-        };
-        let result = self.run(script)?;
-        result.as_bool().map_err(|kind| {
-            let message = "a condition must be true or false";
-            let label = format!("this is {}", explain::plain_kind(kind));
-            let wrong = Diagnostic::new(Kind::Input, "E-SCRIPT-RULE", message);
-            Box::new(
-                wrong
-                    .at(&self.loaded.code.source, rule.condition_span.clone(), label)
-                    .help("compare it: laser.nearest < 0.25"),
-            )
-        })
-    }
-
-    pub(super) fn value(&self, rule: &Rule) -> Result<f64> {
-        let script = match &rule.value {
-            Clause::Native(number) => return Ok(number.value(self.inputs())),
-            Clause::Script(script) => script,
-        };
-        let result = self.run(script)?;
-        number(&result).ok_or_else(|| {
-            let label = format!("this is {}", explain::plain_kind(result.type_name()));
-            let wrong = Diagnostic::new(Kind::Input, "E-SCRIPT-RULE", "a rule's value must be a number");
-            Box::new(
-                wrong.at(&self.loaded.code.source, rule.value_span.clone(), label).help("write a number, such as -1"),
-            )
-        })
-    }
-
-    fn run(&self, script: &ScriptClause) -> Result<Dynamic> {
-        let loaded = &*self.loaded;
-        let mut scope = Scope::new();
-        for root in &script.roots {
-            match root.as_str() {
-                "facts" => drop(scope.push("facts", self.all())),
-                "calibrated" => drop(scope.push_dynamic("calibrated", self.calibration().as_ref().clone())),
-                group => match view(group, &self.facts) {
-                    unknown if unknown.is_unit() => {}
-                    known => drop(scope.push_dynamic(group, known)),
-                },
-            }
-        }
-        for index in 0..script.variables {
-            if let Some((name, value)) = variable(&loaded.constants, index) {
-                scope.push_dynamic(name, value);
-            }
-        }
-        let result = loaded.engine.eval_ast_with_scope::<Dynamic>(&mut scope, &script.ast);
-        result.map_err(|error| Box::new(explain::running(&loaded.code.source, &error)))
-    }
-
-    fn calibration(&self) -> Arc<Dynamic> {
-        self.calibrated.as_ref().map_or_else(Arc::default, Arc::clone)
-    }
-
-    fn all(&self) -> All {
-        All::new(&self.facts, &self.calibration())
-    }
-
-    fn call(&self, function: &str) -> Result<Dynamic> {
-        let loaded = &*self.loaded;
-        let options = CallFnOptions::new().eval_ast(false).rewind_scope(true);
-        let arguments = (self.all(),);
-        let result = loaded.engine.call_fn_with_options(options, &mut Scope::new(), &loaded.ast, function, arguments);
-        result.map_err(|error| Box::new(explain::running(&loaded.code.source, &error)))
-    }
-
-    /// What `fn reward` returns; its value may still be infinite.
-    pub(super) fn reward(&self, span: &Range<usize>) -> Result<Verdict> {
-        let result = self.call("reward")?;
-        if let Some(reward) = number(&result) {
-            return Ok(Verdict { reward, recover: false });
-        }
-        let wrong = |message: String| {
-            Diagnostic::new(Kind::Input, "E-REWARD-VALUE", message)
-                .at(&self.loaded.code.source, span.clone(), "defined here")
-                .help("return a number, or #{ value: -1, recover: true }")
-        };
-        let kind = explain::plain_kind(result.type_name());
-        let Some(map) = result.try_cast::<Map>() else {
-            return wrong(format!("'fn reward' must return a number or a map, found {kind}")).into();
-        };
-        if let Some(key) = map.keys().find(|key| !matches!(key.as_str(), "value" | "recover")) {
-            let near = nearest_name(key, ["value", "recover"])
-                .map_or(String::new(), |near| format!("; did you mean '{near}'?"));
-            return wrong(format!("the map that 'fn reward' returned has a key '{}'{near}", printable(key))).into();
-        }
-        let recover = map.get("recover").map_or(Ok(false), Dynamic::as_bool);
-        match (map.get("value").and_then(number), recover) {
-            (Some(reward), Ok(recover)) => Ok(Verdict { reward, recover }),
-            (None, _) => wrong("the map that 'fn reward' returned has no number as its 'value'".to_owned()).into(),
-            (_, Err(_)) => {
-                wrong("'recover' in the map that 'fn reward' returned must be true or false".to_owned()).into()
-            }
-        }
-    }
-
-    pub(super) fn loaded(&self) -> &Arc<Loaded> {
-        &self.loaded
+    pub(super) fn present(&self) -> &Present {
+        &self.present
     }
 }
 

@@ -7,6 +7,7 @@
 mod behaviour;
 mod chain;
 mod compile;
+mod evaluate;
 mod explain;
 mod expression;
 mod fact_table;
@@ -18,6 +19,7 @@ mod reach;
 mod reference;
 mod rehearsal;
 mod rule;
+mod running;
 mod sandbox;
 mod setup;
 mod source;

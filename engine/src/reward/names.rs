@@ -137,6 +137,7 @@ impl Names<'_> {
     fn called(&mut self, call: &FnCallExpr, position: Position, in_rule: bool, receiver: usize) {
         let (name, found) = (call.name.as_str(), call.args.len() + receiver);
         if call.is_operator_call() || !name.starts_with(|c: char| c.is_alphabetic() || c == '_') {
+            self.text_compared(call, position);
             return self.whole_division(call, position);
         }
         if SETUP.iter().any(|row| row.name == name) && receiver == 0 {
@@ -166,11 +167,31 @@ impl Names<'_> {
         }
     }
 
+    /// A comparison of a number with a text is never true, silently.
+    fn text_compared(&mut self, call: &FnCallExpr, position: Position) {
+        let [a, b] = call.args.as_slice() else { return };
+        let is_text = |expr: &Expr| matches!(expr, Expr::StringConstant(..) | Expr::InterpolatedString(..));
+        let orders = matches!(call.name.as_str(), "<" | "<=" | ">" | ">=");
+        let equals = matches!(call.name.as_str(), "==" | "!=");
+        let wrong = orders || equals && (self.is_fact(a) || self.is_fact(b));
+        if wrong && (is_text(a) || is_text(b)) {
+            let message = "a number cannot be compared with a text".to_owned();
+            self.mistake("E-SCRIPT-NAME", position, message, "here", "write a number without quotes");
+        }
+    }
+
+    fn is_fact(&self, expr: &Expr) -> bool {
+        let Some(chain) = Chain::of(expr) else { return false };
+        let all = self.facts_names.iter().any(|name| name == chain.root);
+        let group = if all { chain.group_of_facts() } else { chain.group() };
+        group.is_some_and(|(group, _)| GROUPS.iter().any(|row| row.0 == group))
+    }
+
     /// `1 / 2` is 0 between whole numbers: nobody means that.
     fn whole_division(&mut self, call: &FnCallExpr, position: Position) {
         if let ("/", [Expr::IntegerConstant(a, _), Expr::IntegerConstant(b, _)]) =
             (call.name.as_str(), call.args.as_slice())
-            && (*b == 0 || a % b != 0)
+            && a.checked_rem(*b) != Some(0)
         {
             let message = "a division of whole numbers drops the fraction".to_owned();
             self.mistake("E-SCRIPT-RULE", position, message, "here", format!("write {a}.0 / {b}.0"));

@@ -3,7 +3,6 @@
 use super::judge::Judge;
 use crate::diagnostic::{Diagnostic, Result};
 use crate::settings::Settings;
-use std::sync::Arc;
 
 /// Tries every rule and function on an empty place and in a tight corner.
 ///
@@ -28,12 +27,12 @@ pub(super) fn rehearse(mut judge: Judge, settings: &Settings) -> Result<()> {
 }
 
 fn everything(judge: &Judge) -> Result<()> {
-    let loaded = Arc::clone(judge.loaded());
-    for rule in &loaded.rules {
-        certain(judge.condition(rule))?;
-        certain(judge.value(rule))?;
+    let present = judge.present();
+    for rule in &present.loaded.rules {
+        certain(present.condition(rule))?;
+        certain(present.value(rule))?;
     }
-    loaded.reward.as_ref().map_or(Ok(()), |span| certain(judge.reward(span)))
+    present.loaded.reward.as_ref().map_or(Ok(()), |span| certain(present.reward(span)))
 }
 
 fn certain<T>(result: Result<T>) -> Result<()> {

@@ -6,7 +6,7 @@ use super::expression::{Flag, Number};
 use super::source::Code;
 use super::syntax::{TimeUnit, WrittenRule};
 use crate::diagnostic::{Diagnostic, Kind, Result, printable};
-use rhai::{AST, ASTNode, Expr, Module, Shared, Stmt};
+use rhai::{AST, ASTNode, Expr, Module, Position, Shared, Stmt};
 use std::collections::BTreeSet;
 use std::ops::Range;
 
@@ -167,7 +167,7 @@ fn persistence(code: &Code, written: &WrittenRule<'_>, compiler: &mut Compiler<'
 
 /// The bytes of an expression: from its first token to what ends it.
 fn span(code: &Code, expr: &Expr) -> Range<usize> {
-    let start = explain::offset(&code.source, expr.start_position());
+    let start = explain::offset(&code.source, first(expr));
     let tail = &code.plain[start..];
     let mut depth = 0_i32;
     let mut before = ' ';
@@ -186,6 +186,15 @@ fn span(code: &Code, expr: &Expr) -> Range<usize> {
         before = c;
     }
     start..start + tail.trim_end().len()
+}
+
+// An operator's own position is the operator's; what is underlined begins with its left side.
+fn first(expr: &Expr) -> Position {
+    match expr {
+        Expr::FnCall(call, _) if call.is_operator_call() && call.args.len() == 2 => first(&call.args[0]),
+        Expr::And(parts, _) | Expr::Or(parts, _) => parts.first().map_or(Position::NONE, first),
+        other => other.start_position(),
+    }
 }
 
 fn ends_expression(rest: &str) -> bool {

@@ -19,8 +19,9 @@ pub(super) const MAX_CALL_LEVELS: usize = 16;
 pub(super) const MAX_NESTING: usize = 48;
 /// Bytes of one text.
 pub(super) const MAX_TEXT_BYTES: usize = 4096;
-/// Values in one array.
-pub(super) const MAX_ARRAY: usize = 4096;
+/// Values in one array: more than any laser has beams. Comparing two arrays is one operation, however long they are, so
+/// that this and the operations together bound the time.
+pub(super) const MAX_ARRAY: usize = 1024;
 /// Keys in one map.
 pub(super) const MAX_MAP: usize = 64;
 /// Variables at one time.
@@ -69,6 +70,7 @@ pub(super) fn engine() -> Engine {
         .set_optimization_level(OptimizationLevel::None)
         .set_strict_variables(true)
         .set_allow_shadowing(false)
+        .set_allow_anonymous_fn(false)
         .set_fail_on_invalid_map_property(true);
     for word in NOT_HERE {
         engine.disable_symbol(*word);

@@ -182,7 +182,8 @@ fn fault(message: String) -> Box<EvalAltResult> {
 
 /// Comparison with a number, on either side, for something that stands for one range.
 fn compare<T: Variant + Clone>(engine: &mut Engine, range_m: fn(&T) -> f64) {
-    let operators: [(&str, fn(f64, f64) -> bool); 4] =
+    type Holds = fn(f64, f64) -> bool;
+    let operators: [(&str, Holds); 4] =
         [("<", |a, b| a < b), ("<=", |a, b| a <= b), (">", |a, b| a > b), (">=", |a, b| a >= b)];
     for (operator, holds) in operators {
         engine.register_fn(operator, move |a: T, b: f64| holds(range_m(&a), b));

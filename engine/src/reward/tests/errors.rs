@@ -2,6 +2,7 @@
 
 use super::parse;
 use crate::diagnostic::{Diagnostic, Kind};
+use crate::random::{Random, Stream};
 use crate::reward::Behaviour;
 
 fn wrong(text: &str) -> Diagnostic {
@@ -110,7 +111,7 @@ fn a_wrong_setting_is_shown_at_its_key_or_value() {
 
 #[test]
 fn functions_that_are_not_here_are_named_at_load() {
-    expect("fn reward(facts) { sqroot(2.0) }", "E-SCRIPT-NAME", "sqroot", "there are");
+    expect("fn reward(facts) { wave(2.0) }", "E-SCRIPT-NAME", "wave", "there are");
     expect("fn reward(facts) { sqt(2.0) }", "E-SCRIPT-NAME", "sqt", "'sqrt'");
     expect("fn reward(facts) { atan2(1.0) }", "E-SCRIPT-NAME", "atan2", "atan2(y, x)");
     for call in
@@ -195,6 +196,8 @@ fn hidden_characters_are_refused() {
 #[test]
 fn other_slips_are_told_in_plain_words() {
     expect("world(\"room\")\nrule \"a\" when true => 1;", "E-SCRIPT-SYNTAX", "rule", "';'");
+    expect("fn reward(facts) { let f = |x| x; 1 }", "E-SCRIPT-SYNTAX", "|", "");
+    expect("fn reward(facts) { if facts.laser.right < \"1\" { 1 } else { 0 } }", "E-SCRIPT-NAME", "<", "quotes");
     expect("fn reward(facts) { 2.0 ** 3.0 }", "E-SCRIPT-SYNTAX", "*", "pow");
     expect("rule \"a\" when laser.right > 1 / 2 => 1;", "E-SCRIPT-RULE", "/", "1.0 / 2.0");
     expect("if true { rule \"a\" when true => 1; }", "E-SCRIPT-RULE", "rule", "top level");
@@ -218,4 +221,29 @@ fn files_that_are_no_scripts_are_named() {
     assert!(load(&write("b.rhai", b"\x89PNG\r\n")).message.contains("PNG"));
     assert!(load(&write("c.rhai", &vec![b' '; (1 << 20) + 1])).message.contains("too long"));
     assert!([load(folder.path())].iter().all(|wrong| wrong.kind == Kind::Input));
+}
+
+#[test]
+fn a_damaged_script_is_never_a_panic() {
+    let mut random = Random::new(11, Stream::Test);
+    let pieces = [
+        "(", ")", "[", "]", "{", "}", "\"", "'", "`", "/*", "\\", "é", "for", "=>", "then", "-", "9", ".", ";",
+        "facts", "#{",
+    ];
+    for name in ["wall", "platform", "object"] {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scripts/{name}.rhai"));
+        let text: Vec<char> = std::fs::read_to_string(path).unwrap().chars().collect();
+        for _ in 0..700 {
+            let at = random.below(text.len() as u32) as usize;
+            let skipped = random.below(4) as usize;
+            let piece = pieces[random.below(pieces.len() as u32) as usize];
+            let (before, after) = (&text[..at], text.get(at + skipped..).unwrap_or_default());
+            let damaged: String = before.iter().copied().chain(piece.chars()).chain(after.iter().copied()).collect();
+            if let Err(wrong) = parse(&damaged)
+                && let Some(place) = &wrong.place
+            {
+                assert!(place.source.text.get(place.span.clone()).is_some(), "{damaged}");
+            }
+        }
+    }
 }
