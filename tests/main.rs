@@ -5,6 +5,8 @@
 /// Runs the engine in a scratch folder.
 mod support;
 
+/// The step loop allocates nothing.
+mod allocation;
 /// Imports between rooms, file sizes, forbidden words: the laws of ARCHITECTURE.md.
 mod architecture;
 /// Every mistake that a user can make gets one clear error; the texts stand in `snapshots/`.

@@ -98,10 +98,11 @@ fn write_seed(folder: &Path, plan: &Plan, result: &SeedResult) -> Result<()> {
     write_json(&folder.join("summary.json"), &result.summary)?;
     let rules: Vec<String> = plan.behaviour.rules().iter().map(|rule| rule.name.clone()).collect();
     let mut step = 0;
-    let rows: Vec<CurveRow> = (result.learned.tally.windows.iter())
-        .map(|window| {
+    let tally = &result.learned.tally;
+    let rows: Vec<CurveRow> = (tally.windows.iter().enumerate())
+        .map(|(index, window)| {
             step += window.steps;
-            CurveRow { step, reinforcement: window.reinforcement, by_rule: window.by_rule.clone() }
+            CurveRow { step, reinforcement: window.reinforcement, by_rule: tally.by_rule(index).to_vec() }
         })
         .collect();
     write_atomic(&folder.join("curve.csv"), curve_csv(WINDOW_STEPS, &rules, &rows).as_bytes())?;

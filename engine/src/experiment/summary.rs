@@ -122,7 +122,7 @@ impl Summary {
         let rules = plan.behaviour.rules().iter().enumerate().map(|(index, rule)| RuleTotal {
             name: rule.name.clone(),
             fired: learned.tally.fired[index],
-            total: learned.tally.windows.iter().map(|window| window.by_rule[index]).sum(),
+            total: (0..learned.tally.windows.len()).map(|window| learned.tally.by_rule(window)[index]).sum(),
         });
         Self {
             behaviour: plan.behaviour.name().to_owned(),

@@ -6,14 +6,12 @@ use super::Step;
 pub const WINDOW_STEPS: u64 = 400;
 
 /// One window.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
     /// Steps that it holds; fewer than 400 only in the last window of a run.
     pub steps: u64,
     /// Sum of the rewards.
     pub reinforcement: f64,
-    /// By rule: sum of what it added.
-    pub by_rule: Vec<f64>,
 }
 
 /// Counts over a whole run.
@@ -27,34 +25,44 @@ pub struct Tally {
     pub failures: u64,
     /// Steps in which the body touched something.
     pub contacts: u64,
-    rules: usize,
+    /// By window, then by rule: sum of what the rule added.
+    by_rule: Vec<f64>,
 }
 
 impl Tally {
     /// Counts for so many rules over so many steps; nothing is allocated later.
     #[must_use]
     pub fn new(rules: usize, steps: u64) -> Self {
-        let windows = Vec::with_capacity(steps.div_ceil(WINDOW_STEPS).min(1 << 20) as usize);
-        Self { windows, fired: vec![0; rules], failures: 0, contacts: 0, rules }
+        let windows = steps.div_ceil(WINDOW_STEPS).min(1 << 20) as usize;
+        let (windows, by_rule) = (Vec::with_capacity(windows), Vec::with_capacity(windows * rules));
+        Self { windows, fired: vec![0; rules], failures: 0, contacts: 0, by_rule }
     }
 
     /// Counts one step; true if it ended a window.
     pub fn count(&mut self, step: &Step, fired: &[Option<f64>]) -> bool {
         if self.windows.last().is_none_or(|window| window.steps == WINDOW_STEPS) {
-            self.windows.push(Window { steps: 0, reinforcement: 0.0, by_rule: vec![0.0; self.rules] });
+            self.windows.push(Window { steps: 0, reinforcement: 0.0 });
+            self.by_rule.resize(self.windows.len() * self.fired.len(), 0.0);
         }
         self.failures += u64::from(step.failed);
         self.contacts += u64::from(step.contact);
         let Some(window) = self.windows.last_mut() else { return false };
         window.steps += 1;
         window.reinforcement += step.reward;
-        for ((count, sum), value) in self.fired.iter_mut().zip(&mut window.by_rule).zip(fired) {
+        let sums = self.by_rule.len() - self.fired.len();
+        for ((count, sum), value) in self.fired.iter_mut().zip(&mut self.by_rule[sums..]).zip(fired) {
             if let Some(value) = value {
                 *count += 1;
                 *sum += value;
             }
         }
         window.steps == WINDOW_STEPS
+    }
+
+    /// By rule: what it added in one window.
+    #[must_use]
+    pub fn by_rule(&self, window: usize) -> &[f64] {
+        &self.by_rule[window * self.fired.len()..(window + 1) * self.fired.len()]
     }
 
     /// Reinforcement of each window, first to last.
@@ -81,6 +89,6 @@ mod tests {
         }
         assert_eq!(tally.curve(), [-4.0, -1.0]);
         assert_eq!((tally.fired.as_slice(), tally.failures, tally.contacts), (&[5, 0][..], 5, 5));
-        assert_eq!(tally.windows[0].by_rule, [-4.0, 0.0]);
+        assert_eq!(tally.by_rule(0), [-4.0, 0.0]);
     }
 }

@@ -1,0 +1,58 @@
+#![allow(unsafe_code, reason = "a global allocator cannot be written without it; it only counts and passes on")]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use engine::experiment::{Overrides, Plan, learn};
+use engine::reward::Behaviour;
+
+use crate::support::root;
+
+struct Counting;
+
+thread_local! {
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+}
+
+// SAFETY: every call goes to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+        // SAFETY: the caller keeps the contract.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the caller keeps the contract.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+        // SAFETY: the caller keeps the contract.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+fn allocations(plan: &Plan, steps: u64) -> u64 {
+    let mut plan = plan.clone();
+    plan.settings.run.steps = steps;
+    let before = ALLOCATIONS.get();
+    learn(&plan, 7, &AtomicBool::new(false), &|_| ()).unwrap();
+    ALLOCATIONS.get() - before
+}
+
+#[test]
+fn more_steps_allocate_nothing_more() {
+    for script in ["wall", "platform"] {
+        let behaviour = Behaviour::load(&root().join(format!("scripts/{script}.rhai"))).unwrap();
+        let plan = Plan::new(Arc::new(behaviour), &Overrides::default()).unwrap();
+        // Scratch memory grows until the hardest view was seen; the steps after that are free.
+        assert_eq!(allocations(&plan, 4_000), allocations(&plan, 3_000), "{script}");
+    }
+}
