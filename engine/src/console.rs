@@ -90,7 +90,7 @@ impl Console {
             return ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::hidden());
         }
         let bar = ProgressBar::new(steps);
-        let style = ProgressStyle::with_template("learning {bar:30} {pos}/{len} steps  {msg}");
+        let style = ProgressStyle::with_template("learning {wide_bar} {pos}/{len} steps {msg:30}");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         bar.enable_steady_tick(Duration::from_millis(100));
         bar

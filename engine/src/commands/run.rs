@@ -68,7 +68,7 @@ fn learn_all(
     let plain = bar.is_hidden() && seeds.len() == 1;
     let report = |progress: Progress| {
         bar.inc(engine::experiment::WINDOW_STEPS);
-        bar.set_message(format!("reinforcement of the last 400 steps: {}", progress.reinforcement));
+        bar.set_message(format!("reinforcement per 400: {}", progress.reinforcement));
         if plain {
             console.note(&format!(
                 "step {}: reinforcement of the last 400 steps {}",
