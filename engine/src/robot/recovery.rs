@@ -4,7 +4,7 @@ use crate::diagnostic::{Diagnostic, Kind, Result};
 use crate::geometry::{Point2, Pose};
 use crate::random::{Random, Stream};
 use crate::settings::RecoverySettings;
-use crate::world::World;
+use crate::world::{Layout, Route, World};
 
 /// How often a shifted pose is drawn before the unshifted ones are tried.
 const DRAWS: usize = 50;
@@ -25,46 +25,55 @@ impl Recovery {
         Self { settings: settings.clone(), random: Random::new(seed, Stream::Recovery) }
     }
 
-    /// A safe pose: on the route nearest to the robot, anywhere on the route, or at a start, shifted at random.
+    /// A safe pose: on the lap route, at a start or behind the first mover, shifted at random.
     ///
     /// # Errors
-    /// If no pose on the route or at a start is free and has ground under it.
+    /// `E-RECOVERY-ROUTE` or `E-RECOVERY-MOVER` if the world has no lap route or no mover to recover to;
+    /// `E-RECOVERY-BLOCKED` if every pose that may be used is blocked or has no ground under it.
     pub fn pose(&mut self, world: &World) -> Result<Pose> {
         for _ in 0..DRAWS {
-            let base = self.base(world);
+            let base = self.base(world)?;
             let pose = self.shifted(base);
             if world.is_safe(pose) {
                 return Ok(pose);
             }
         }
-        let mut fallback = world.layout().starts.clone();
-        if let Some(route) = world.layout().lap.map(|index| &world.layout().routes[index]) {
-            let count = (route.length_m() / SPACING_M) as usize;
-            fallback.extend((0..count).map(|index| route.pose_at(index as f64 * SPACING_M)));
-        }
-        fallback.into_iter().find(|pose| world.is_safe(*pose)).ok_or_else(|| {
-            let message = format!(
-                "the robot cannot recover: every start and route pose of world '{}' is blocked",
-                world.layout().name
-            );
-            Box::new(
-                Diagnostic::new(Kind::Input, "E-RECOVERY-BLOCKED", message)
-                    .help("move the starts or the route away from walls, boxes and edges"),
-            )
-        })
+        let safe = |pose: &Pose| world.is_safe(*pose);
+        let found = if self.settings.to == "behind" {
+            self.farther_behind(world).find(safe)
+        } else {
+            let starts = world.layout().starts.iter().copied();
+            starts.chain(lap(world.layout()).into_iter().flat_map(along)).find(safe)
+        };
+        found.ok_or_else(|| self.blocked(world))
     }
 
-    fn base(&mut self, world: &World) -> Pose {
+    fn base(&mut self, world: &World) -> Result<Pose> {
         let layout = world.layout();
-        match (layout.lap.map(|index| &layout.routes[index]), self.settings.to.as_str()) {
-            (Some(route), "nearest") => {
+        match self.settings.to.as_str() {
+            "nearest" => {
                 let pose = world.body().pose;
-                route.pose_at(route.nearest(Point2::new(pose.x_m, pose.y_m)).0)
+                let route = lap(layout).ok_or_else(|| self.no_route(layout))?;
+                Ok(route.pose_at(route.nearest(Point2::new(pose.x_m, pose.y_m)).0))
             }
-            (Some(route), "random") => route.pose_at(self.random.between(0.0, route.length_m())),
-            // Without a route there are only the starts.
-            _ => layout.starts[self.random.below(layout.starts.len() as u32) as usize],
+            "random" => {
+                let route = lap(layout).ok_or_else(|| self.no_route(layout))?;
+                Ok(route.pose_at(self.random.between(0.0, route.length_m())))
+            }
+            "behind" => self.farther_behind(world).next().ok_or_else(|| no_mover(layout)),
+            _ => Ok(layout.starts[self.random.below(layout.starts.len() as u32) as usize]),
         }
+    }
+
+    /// The wanted place behind the first mover, then places still farther behind, for one lap or to the route's
+    /// beginning; the wanted place itself is there in any case.
+    fn farther_behind<'a>(&self, world: &'a World) -> impl Iterator<Item = Pose> + use<'a> {
+        let distance_m = self.settings.distance_m;
+        world.prey_route().into_iter().flat_map(move |(route, along_m)| {
+            let room_m = if route.closed { route.length_m() } else { along_m };
+            let count = ((room_m - distance_m).max(0.0) / SPACING_M) as usize;
+            (0..=count).map(move |index| route.pose_at(along_m - distance_m - index as f64 * SPACING_M))
+        })
     }
 
     fn shifted(&mut self, pose: Pose) -> Pose {
@@ -74,5 +83,123 @@ impl Recovery {
             pose.y_m + self.random.between(-shift, shift),
             pose.yaw_rad + self.random.between(-turn, turn),
         )
+    }
+
+    fn no_route(&self, layout: &Layout) -> Box<Diagnostic> {
+        let to = &self.settings.to;
+        let message = format!("recovery(\"{to}\") needs the route 'lap', and the world '{}' has none", layout.name);
+        ends(layout, "E-RECOVERY-ROUTE", message)
+            .help(
+                "add a closed [[route]] with name = \"lap\" to the world, or write recovery(\"start\") in the script \
+             (or --set recovery.to=start)",
+            )
+            .into()
+    }
+
+    fn blocked(&self, world: &World) -> Box<Diagnostic> {
+        let name = &world.layout().name;
+        let (places, help) = if self.settings.to == "behind" {
+            (
+                "place behind the first mover",
+                "give the mover a longer route, or keep the route clear of solids and edges",
+            )
+        } else {
+            ("start and route pose", "move the starts or the route away from walls, boxes and edges")
+        };
+        let message = format!("the robot cannot recover: every {places} of world '{name}' is blocked");
+        Box::new(Diagnostic::new(Kind::Input, "E-RECOVERY-BLOCKED", message).help(help))
+    }
+}
+
+fn lap(layout: &Layout) -> Option<&Route> {
+    layout.lap.map(|index| &layout.routes[index])
+}
+
+fn along(route: &Route) -> impl Iterator<Item = Pose> {
+    let count = (route.length_m() / SPACING_M) as usize;
+    (0..count).map(|index| route.pose_at(index as f64 * SPACING_M))
+}
+
+fn no_mover(layout: &Layout) -> Box<Diagnostic> {
+    let message = format!("recovery(\"behind\") needs a mover, and the world '{}' has none", layout.name);
+    ends(layout, "E-RECOVERY-MOVER", message)
+        .help("add a [[mover]] and its [[route]] to the world, or write recovery(\"start\") in the script")
+        .into()
+}
+
+/// An error about something that a world file does not have.
+fn ends(layout: &Layout, code: &'static str, message: String) -> Diagnostic {
+    let end = layout.source.text.len();
+    Diagnostic::new(Kind::Input, code, message).at(&layout.source, end..end, "the file ends here")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnostic::SourceText;
+    use crate::geometry::Twist;
+    use crate::settings::Settings;
+    use std::f64::consts::FRAC_PI_2;
+    use std::sync::Arc;
+
+    const CORNER: &str = "[[route]]\nname = \"way\"\npoints_m = [[0, 0], [4, 0], [4, 4]]\n\
+                          [[start]]\nposition_m = [0, 3]\n";
+    const MOVER: &str = "[[mover]]\nname = \"prey\"\nroute = \"way\"\nspeed_m_per_s = 1\noffset_m = 2\n\
+                         boxes = [{ centre_m = [0, 0, 0.3], size_m = [0.4, 0.4, 0.4] }]\n";
+
+    fn world(text: &str) -> World {
+        let layout = Layout::parse(SourceText::new("test.toml", text)).unwrap_or_else(|error| panic!("{error:?}"));
+        World::new(Arc::new(layout), &Settings::default().robot, 0.5, 1)
+    }
+
+    fn exact(to: &str) -> Recovery {
+        Recovery::new(&RecoverySettings { to: to.to_owned(), distance_m: 1.1, position_m: 0.0, yaw_deg: 0.0 }, 1)
+    }
+
+    fn is_near(pose: Pose, x_m: f64, y_m: f64, yaw_rad: f64) -> bool {
+        pose.distance_m(Pose::new(x_m, y_m, 0.0)) < 1e-9 && (pose.yaw_rad - yaw_rad).abs() < 1e-9
+    }
+
+    #[test]
+    fn behind_a_mover_is_a_place_on_its_route_that_looks_along_it() {
+        let mut world = world(&format!("{CORNER}{MOVER}"));
+        assert!(is_near(exact("behind").pose(&world).unwrap(), 0.9, 0.0, 0.0));
+        for _ in 0..7 {
+            world.advance(Twist::default());
+        }
+        // 2 + 3.5 m along: 1.5 m past the corner; 1.1 m less is on the second side too.
+        assert!(is_near(exact("behind").pose(&world).unwrap(), 4.0, 0.4, FRAC_PI_2));
+    }
+
+    #[test]
+    fn a_mover_that_stands_at_the_end_of_its_route_is_followed_there() {
+        let mut world = world(&format!("{CORNER}{MOVER}"));
+        for _ in 0..100 {
+            world.advance(Twist::default());
+        }
+        assert!(is_near(exact("behind").pose(&world).unwrap(), 4.0, 2.9, FRAC_PI_2));
+    }
+
+    #[test]
+    fn a_place_behind_that_is_blocked_gives_way_to_one_farther_behind() {
+        let wall = "[[wall]]\npoints_m = [[1, -1], [1, 1]]\n";
+        let world = world(&format!("{CORNER}{}{wall}", MOVER.replace("= 2", "= 3")));
+        // 1.9 m along is free; 0.25 m of half length ahead of the wall it would be at 1.3 m at least.
+        assert!(is_near(exact("behind").pose(&world).unwrap(), 1.9, 0.0, 0.0));
+        let world = self::world(&format!("{CORNER}{MOVER}{}", wall.replace("[1, ", "[0.9, ")));
+        assert!(is_near(exact("behind").pose(&world).unwrap(), 0.4, 0.0, 0.0));
+    }
+
+    #[test]
+    fn a_world_without_what_recovery_needs_is_an_error_that_names_it() {
+        let bare = world(CORNER);
+        assert_eq!(exact("behind").pose(&bare).unwrap_err().code, "E-RECOVERY-MOVER");
+        for to in ["nearest", "random"] {
+            let error = exact(to).pose(&bare).unwrap_err();
+            assert_eq!(error.code, "E-RECOVERY-ROUTE");
+            let help = error.help.unwrap();
+            assert!(help.contains("name = \"lap\"") && help.contains("recovery(\"start\")"), "{help}");
+        }
+        assert!(is_near(exact("start").pose(&bare).unwrap(), 0.0, 3.0, 0.0));
     }
 }

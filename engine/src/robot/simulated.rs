@@ -27,7 +27,8 @@ impl SimulatedRobot {
     /// # Errors
     /// If no pose is safe, or the camera shows nothing from there.
     pub fn new(layout: &Arc<Layout>, settings: &Settings, seed: u64) -> Result<Self> {
-        let mut world = World::new(Arc::clone(layout), &settings.robot, settings.run.period_s, seed);
+        let mut world = World::new(Arc::clone(layout), &settings.robot, settings.run.period_s, seed)
+            .with_mover_speed(settings.movers.speed);
         let camera = Camera::new(&layout.scene, &settings.camera, seed);
         let laser = Laser::new(&layout.scene, &settings.laser, seed);
         let mut recovery = Recovery::new(&settings.recovery, seed);

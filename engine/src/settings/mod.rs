@@ -31,6 +31,8 @@ pub struct Settings {
     pub learner: LearnerSettings,
     /// What `then recover` does.
     pub recovery: RecoverySettings,
+    /// What drives by itself.
+    pub movers: MoverSettings,
 }
 
 /// One stage of the filter chain.
@@ -120,8 +122,16 @@ pub struct LearnerSettings {
 #[allow(missing_docs, reason = "every field is documented in the table of settings")]
 pub struct RecoverySettings {
     pub to: String,
+    pub distance_m: f64,
     pub position_m: f64,
     pub yaw_deg: f64,
+}
+
+/// What drives by itself.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs, reason = "every field is documented in the table of settings")]
+pub struct MoverSettings {
+    pub speed: f64,
 }
 
 /// The ways of learning, by name.
@@ -188,7 +198,8 @@ impl Default for Settings {
                 initial_high: -0.9,
                 failure_is_terminal: false,
             },
-            recovery: RecoverySettings { to: "nearest".to_owned(), position_m: 0.1, yaw_deg: 8.6 },
+            recovery: RecoverySettings { to: "nearest".to_owned(), distance_m: 1.1, position_m: 0.1, yaw_deg: 8.6 },
+            movers: MoverSettings { speed: 1.0 },
         }
     }
 }

@@ -160,9 +160,11 @@ settings! {
     learner.initial_low, "value", Number(-1000.0, 1000.0), "Least first value of an action.";
     learner.initial_high, "value", Number(-1000.0, 1000.0), "Greatest first value of an action.";
     learner.failure_is_terminal, "", Flag, "Whether nothing is expected after a failure.";
-    recovery.to, "", Choice(&["nearest", "random", "start"]), "Where recovery puts the robot: on the route or at a start.";
+    recovery.to, "", Choice(&["nearest", "random", "start", "behind"]), "Where recovery puts the robot: on the lap route, at a start, or behind the first mover.";
+    recovery.distance_m, "metres", Number(0.0, 100.0), "How far behind the mover, along its route; for `behind` only.";
     recovery.position_m, "metres", Number(0.0, 2.0), "Greatest random shift of that place.";
     recovery.yaw_deg, "degrees", Number(0.0, 180.0), "Greatest random turn of that heading.";
+    movers.speed, "times", Number(0.0, 10.0), "How fast everything that drives by itself is, by the speed in the world file.";
 }
 
 impl Setting {

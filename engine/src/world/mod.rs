@@ -74,6 +74,7 @@ pub struct World {
     traffic: Traffic,
     period_s: f64,
     periods: u64,
+    mover_speed: f64,
 }
 
 impl World {
@@ -83,7 +84,13 @@ impl World {
         let start = layout.starts.first().copied().unwrap_or_default();
         let drive = Drive::new(robot, period_s, seed);
         let traffic = Traffic::new(&layout.movers, &layout.routes);
-        Self { robot: Robot::new(drive, &layout, start), traffic, period_s, periods: 0, layout }
+        Self { robot: Robot::new(drive, &layout, start), traffic, period_s, periods: 0, mover_speed: 1.0, layout }
+    }
+
+    /// The same world with every mover `speed` times as fast as its file says.
+    #[must_use]
+    pub fn with_mover_speed(self, speed: f64) -> Self {
+        Self { mover_speed: speed, ..self }
     }
 
     /// Puts the robot at rest at `pose`, on the highest platform or ramp there or else on the floor.
@@ -97,7 +104,7 @@ impl World {
         let mut motion = self.robot.advance(&self.layout, &self.traffic, command);
         self.periods += 1;
         if !self.traffic.is_empty() {
-            self.traffic.arrange(&self.layout.movers, &self.layout.routes, self.time_s());
+            self.traffic.arrange(&self.layout.movers, &self.layout.routes, self.mover_time_s());
             motion.contact |= self.traffic.touches(self.robot.stance());
         }
         motion
@@ -123,7 +130,20 @@ impl World {
     /// Where the first mover is now.
     #[must_use]
     pub fn prey(&self) -> Option<Pose> {
-        self.layout.movers.first().map(|mover| mover.pose_at(&self.layout.routes, self.time_s()))
+        self.layout.movers.first().map(|mover| mover.pose_at(&self.layout.routes, self.mover_time_s()))
+    }
+
+    /// The route of the first mover, and how far along it the mover is now, metres.
+    #[must_use]
+    pub fn prey_route(&self) -> Option<(&Route, f64)> {
+        let mover = self.layout.movers.first()?;
+        let route = self.layout.routes.get(mover.route)?;
+        Some((route, mover.along_m(route, self.mover_time_s())))
+    }
+
+    /// The time by which movers go.
+    fn mover_time_s(&self) -> f64 {
+        self.time_s() * self.mover_speed
     }
 
     /// Time since the world began, seconds. Placing the robot does not turn it back.

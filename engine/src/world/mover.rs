@@ -24,8 +24,14 @@ impl Mover {
     /// Where it is at a time.
     #[must_use]
     pub fn pose_at(&self, routes: &[Route], time_s: f64) -> Pose {
+        routes.get(self.route).map_or(Pose::default(), |route| route.pose_at(self.along_m(route, time_s)))
+    }
+
+    /// How far along its route it is at a time, metres; more than the length after the first lap.
+    #[must_use]
+    pub fn along_m(&self, route: &Route, time_s: f64) -> f64 {
         let along_m = self.offset_m + self.speed_m_per_s * time_s;
-        routes.get(self.route).map_or(Pose::default(), |route| route.pose_at(along_m))
+        if route.closed { along_m } else { along_m.min(route.length_m()) }
     }
 
     /// Writes its solids in world coordinates into the first of `places` and returns the rest.

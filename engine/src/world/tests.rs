@@ -198,3 +198,16 @@ fn a_ray_meets_the_same_distances_as_a_ruler() {
     assert!((scene.ground_m(-2.5, 0.0, 9.0) - 0.75).abs() < 1e-12);
     assert_eq!(scene.ground_m(-2.5, 0.0, 0.5), 0.0);
 }
+
+#[test]
+fn movers_go_as_many_times_as_fast_as_they_are_set_to() {
+    let after = |speed: f64| {
+        let mut world = World::new(shipped("object"), &EXACT, 0.5, 1).with_mover_speed(speed);
+        drive(&mut world, 0.0, 0.0, 20);
+        assert!((world.moving()[0].centre.x - world.prey().unwrap().x_m).abs() < 1e-12);
+        world.prey().unwrap().x_m
+    };
+    // 10 s from x = 4 m, at 0.2 m/s by the file.
+    assert!((after(1.0) - 6.0).abs() < 1e-9 && (after(1.5) - 7.0).abs() < 1e-9);
+    assert_eq!(after(0.0), 4.0);
+}
