@@ -48,6 +48,9 @@ pub fn learn(plan: &Plan, seed: u64, stop: &AtomicBool, report: &(dyn Fn(Progres
     let mut cycle = Cycle::new(plan, robot)?;
     let random = Random::new(seed, Stream::Learner);
     let mut learner = Learner::new(&settings.learner, cycle.grid().states(), settings.actions.len(), random);
+    if let Some(mirror) = plan.mirror()? {
+        learner = learner.with_mirror(&settings.learner, mirror);
+    }
     let mut tally = Tally::new(plan.behaviour.rules().len(), settings.run.steps);
     let mut early = Recorder::new(WINDOW_STEPS, cycle.robot().world());
     let mut hash = StateHash::default();

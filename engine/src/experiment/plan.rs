@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use crate::diagnostic::{Diagnostic, Kind, Result, nearest_name, printable};
 use crate::filter::Chain;
+use crate::geometry::Twist;
+use crate::learner::Mirror;
 use crate::reward::{Behaviour, Judge};
 use crate::robot::SimulatedRobot;
 use crate::settings::{SETTINGS, Settings, Value, apply};
@@ -69,6 +71,7 @@ impl Plan {
         plan.chain()?;
         plan.grid()?;
         plan.judge()?;
+        plan.mirror()?;
         SimulatedRobot::new(&plan.layout, &plan.settings, 0)?;
         Ok(plan)
     }
@@ -95,6 +98,26 @@ impl Plan {
         Grid::new(&self.settings.grid, camera.width_px as usize, camera.height_px as usize).map_err(|error| {
             let help = Some("use fewer rows or columns".to_owned());
             self.point(Diagnostic::new(Kind::Input, "E-GRID", error.0), "grid.rows", "this many rows", help)
+        })
+    }
+
+    /// The mirror that `learner.mirror` asks for.
+    ///
+    /// # Errors
+    /// If an action has no counterpart that turns the other way.
+    pub fn mirror(&self) -> Result<Option<Mirror>> {
+        if !self.settings.learner.mirror {
+            return Ok(None);
+        }
+        let grid = self.grid()?;
+        let states = (0..grid.states()).map(|state| grid.mirrored(state)).collect();
+        Mirror::new(states, &self.settings.actions).map(Some).map_err(|index| {
+            let Twist { linear_m_per_s: linear, angular_rad_per_s: angular } = self.settings.actions[index];
+            let message =
+                format!("action {index} ({linear} m/s, {angular} rad/s) has no mirror image among the actions");
+            let help = format!("add the action [{linear}, {}], or leave 'mirror' out", -angular);
+            let error = Diagnostic::new(Kind::Input, "E-MIRROR", message);
+            self.point(error, "learner.mirror", "asks for mirrored learning", Some(help))
         })
     }
 

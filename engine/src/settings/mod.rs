@@ -115,6 +115,8 @@ pub struct LearnerSettings {
     pub initial_low: f64,
     pub initial_high: f64,
     pub failure_is_terminal: bool,
+    pub mirror: bool,
+    pub replay: u64,
 }
 
 /// What `then recover` does.
@@ -197,6 +199,8 @@ impl Default for Settings {
                 initial_low: -1.0,
                 initial_high: -0.9,
                 failure_is_terminal: false,
+                mirror: false,
+                replay: 0,
             },
             recovery: RecoverySettings { to: "nearest".to_owned(), distance_m: 1.1, position_m: 0.1, yaw_deg: 8.6 },
             movers: MoverSettings { speed: 1.0 },

@@ -160,6 +160,8 @@ settings! {
     learner.initial_low, "value", Number(-1000.0, 1000.0), "Least first value of an action.";
     learner.initial_high, "value", Number(-1000.0, 1000.0), "Greatest first value of an action.";
     learner.failure_is_terminal, "", Flag, "Whether nothing is expected after a failure.";
+    learner.mirror, "", Flag, "Whether each step is also learned left for right; for symmetric tasks.";
+    learner.replay, "passes", Whole(0, 100), "How often the steps before a recovery, 60 at most, are learned again backwards.";
     recovery.to, "", Choice(&["nearest", "random", "start", "behind"]), "Where recovery puts the robot: on the lap route, at a start, or behind the first mover.";
     recovery.distance_m, "metres", Number(0.0, 100.0), "How far behind the mover, along its route; for `behind` only.";
     recovery.position_m, "metres", Number(0.0, 2.0), "Greatest random shift of that place.";

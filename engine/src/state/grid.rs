@@ -134,6 +134,19 @@ impl Grid {
         (self.row_edges[row + 1] - self.row_edges[row]) * (self.column_edges[column + 1] - self.column_edges[column])
     }
 
+    /// The state of the mirror image, left for right.
+    #[must_use]
+    pub fn mirrored(&self, state: usize) -> usize {
+        let base = if self.fill { self.rows + 1 } else { 2 };
+        let digits = if self.fill { 1 } else { self.rows };
+        let line = base.pow(self.columns as u32);
+        let reversed = |line: usize| {
+            let digit = |column: usize| line / base.pow(column as u32) % base;
+            (0..self.columns).fold(0, |image, column| base * image + digit(column))
+        };
+        (0..digits).rev().fold(0, |image, row| line * image + reversed(state / line.pow(row as u32) % line))
+    }
+
     /// The cells that a state stands for, row by row, filled columns included.
     #[must_use]
     pub fn cells(&self, state: usize) -> Vec<bool> {
@@ -227,6 +240,19 @@ mod tests {
                 mask[cell / 2 * 12 + cell % 2 * 3 + 1] = 255;
             }
             assert_eq!(grid.encode(&mask), state);
+        }
+    }
+
+    #[test]
+    fn a_mirrored_state_stands_for_the_cells_with_columns_reversed() {
+        for grid in [grid(3, 3, true), grid(2, 3, false), grid(3, 2, false)] {
+            let columns = grid.columns;
+            for state in 0..grid.states() {
+                let (cells, image) = (grid.cells(state), grid.cells(grid.mirrored(state)));
+                let reversed: Vec<bool> =
+                    cells.chunks(columns).flat_map(|row| row.iter().rev().copied().collect::<Vec<_>>()).collect();
+                assert_eq!(image, reversed);
+            }
         }
     }
 
