@@ -16,7 +16,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("reward", &[]),
     ("robot", &["world", "sensors"]),
     ("experiment", &["world", "sensors", "filter", "state", "learner", "reward", "robot"]),
-    ("store", &["world", "learner", "reward", "experiment"]),
+    ("store", &["world", "state", "learner", "reward", "experiment"]),
     ("report", &["world", "sensors", "experiment"]),
 ];
 const SHARED: &[&str] = &["geometry", "random", "settings", "diagnostic"];

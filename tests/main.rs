@@ -11,6 +11,8 @@ mod allocation;
 mod architecture;
 /// Every mistake that a user can make gets one clear error; the texts stand in `snapshots/`.
 mod bad_input;
+/// Learned policies combined: files, figures, disagreements, mistakes.
+mod combine;
 /// Same seed, same bytes: twice, with one thread or two, stored and tested again.
 mod determinism;
 /// What a run leaves, and that it is well-formed.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use engine::diagnostic::Result;
+use engine::diagnostic::{Diagnostic, Kind, Result};
 use engine::experiment::{Cycle, Overrides, Plan, in_parallel, learn};
 use engine::filter::Chain;
 use engine::geometry::{Isometry3, Pose};
@@ -45,6 +45,11 @@ pub(crate) fn run(arguments: &BenchArguments, console: &mut Console) -> std::res
     let (world, set) = (arguments.world.clone(), arguments.set.clone());
     let overrides = Overrides { world, steps: Some(arguments.steps), test_steps: None, set };
     let plan = Plan::new(behaviour, &overrides)?;
+    if !plan.settings.policies.is_empty() {
+        let message = format!("'{}' combines policies and learns nothing", plan.behaviour.name());
+        let error = Diagnostic::new(Kind::Usage, "E-POLICY", message).help("measure a behaviour that learns");
+        return Err(ConsoleError::Failed(Box::new(error)));
+    }
     let report = measure(&plan, arguments.steps)?;
     console.json(&report)?;
     print(console, &report)?;

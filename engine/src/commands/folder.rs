@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use engine::diagnostic::{Diagnostic, Kind, Result};
-use engine::experiment::{Learned, Plan, Spread, Summary, TestRun, Trail, WINDOW_STEPS};
+use engine::experiment::{Learned, Member, Plan, Spread, Summary, TestRun, Trail, WINDOW_STEPS};
 use engine::geometry::Point2;
 use engine::report::{
     CurveData, CurveRow, FrameData, PolicyData, PolicyState, TrajectoryData, curve_csv, frame, learning_curve, policy,
@@ -25,9 +25,9 @@ pub(super) struct RunFolder {
 
 impl RunFolder {
     /// Creates the folder and writes `run.toml`, so that a folder that cannot be written is known before learning.
-    pub(super) fn create(path: &Path, plan: &Plan, seed: u64) -> Result<Self> {
+    pub(super) fn create(path: &Path, plan: &Plan, members: &[Member], seed: u64) -> Result<Self> {
         create(path)?;
-        write_atomic(&path.join("run.toml"), run_to_toml(plan, seed)?.as_bytes())?;
+        write_atomic(&path.join("run.toml"), run_to_toml(plan, members, seed)?.as_bytes())?;
         Ok(Self { path: path.to_owned() })
     }
 
@@ -49,7 +49,7 @@ impl RunFolder {
         for result in results {
             let folder = self.path.join(result.summary.seed.to_string());
             create(&folder)?;
-            write_atomic(&folder.join("run.toml"), run_to_toml(plan, result.summary.seed)?.as_bytes())?;
+            write_atomic(&folder.join("run.toml"), run_to_toml(plan, &[], result.summary.seed)?.as_bytes())?;
             write_seed(&folder, plan, result)?;
         }
         draw_curve(&self.path, plan, &results.iter().collect::<Vec<_>>())?;
@@ -82,11 +82,11 @@ impl TestFolder {
     }
 }
 
-fn create(path: &Path) -> Result<()> {
+pub(super) fn create(path: &Path) -> Result<()> {
     std::fs::create_dir_all(path).map_err(|error| Box::new(Diagnostic::disk("create the folder", path, &error)))
 }
 
-fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<()> {
+pub(super) fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<()> {
     let mut text = serde_json::to_string_pretty(value).map_err(|error| {
         Box::new(Diagnostic::new(Kind::Disk, "E-IO", format!("cannot write '{}': {error}", path.display())))
     })?;
@@ -135,13 +135,13 @@ fn draw_seed(folder: &Path, plan: &Plan, result: &SeedResult) -> Result<()> {
     draw_policy(folder, plan, result)
 }
 
-fn draw_trails(folder: &Path, plan: &Plan, title: &str, panels: &[(&str, &Trail)]) -> Result<()> {
+pub(super) fn draw_trails(folder: &Path, plan: &Plan, title: &str, panels: &[(&str, &Trail)]) -> Result<()> {
     let route: Option<Vec<Point2>> = plan.layout.lap.map(|lap| plan.layout.routes[lap].points().to_vec());
     let parts = plan.layout.scene.parts();
     trajectories(&TrajectoryData { title, parts, route: route.as_deref(), panels })?.write(folder, "trajectories")
 }
 
-fn draw_frame(folder: &Path, plan: &Plan, tested: &TestRun) -> Result<()> {
+pub(super) fn draw_frame(folder: &Path, plan: &Plan, tested: &TestRun) -> Result<()> {
     let snapshot = &tested.snapshot;
     let grid = plan.grid()?;
     let (rows, columns) = grid.size();

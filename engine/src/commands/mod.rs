@@ -1,6 +1,7 @@
 //! One file for each command.
 
 pub(crate) mod bench;
+mod combine;
 mod folder;
 pub(crate) mod reference;
 pub(crate) mod run;

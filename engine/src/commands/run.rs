@@ -20,7 +20,11 @@ pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::resul
     let overrides = Overrides { world, steps: arguments.steps, test_steps: None, set };
     let plan = Plan::new(behaviour, &overrides)?;
     let seeds: Vec<u64> = (0..arguments.seeds).map(|index| arguments.seed.wrapping_add(index)).collect();
-    let folder = RunFolder::create(&out(arguments, plan.behaviour.name(), &seeds), &plan, arguments.seed)?;
+    let path = out(arguments, plan.behaviour.name(), &seeds);
+    if !plan.settings.policies.is_empty() {
+        return super::combine::run(arguments, &plan, &seeds, &path, console);
+    }
+    let folder = RunFolder::create(&path, &plan, &[], arguments.seed)?;
 
     let stop = on_ctrl_c()?;
     let threads = arguments.threads.unwrap_or(0) as usize;
@@ -120,11 +124,13 @@ fn print_one(console: &mut Console, summary: &Summary) -> std::result::Result<()
     super::test::print_figures(console, test)
 }
 
-fn print_many(console: &mut Console, spread: &Spread) -> std::result::Result<(), ConsoleError> {
+pub(super) fn print_many(console: &mut Console, spread: &Spread) -> std::result::Result<(), ConsoleError> {
     let count = spread.seeds.len();
     console.line(&format!("behaviour: {} in {}, {count} seeds", spread.behaviour, spread.world))?;
+    let combined = spread.seeds.iter().any(|seed| seed.combination.is_some());
     console.line(&format!(
-        "learned:   {} of {count} seeds ({:.0} %)",
+        "{}   {} of {count} seeds ({:.0} %)",
+        if combined { "good:   " } else { "learned:" },
         spread.converged,
         100.0 * spread.converged as f64 / count as f64
     ))?;
@@ -133,7 +139,9 @@ fn print_many(console: &mut Console, spread: &Spread) -> std::result::Result<(),
     let (median, worst) = (&spread.median, &spread.worst);
     let mut row =
         |name: &str, median: String, worst: String| console.line(&format!("  {name:20}{median:>8}  {worst:>8}"));
-    row("learned at step", step(median.learned_at), step(worst.learned_at))?;
+    if !combined {
+        row("learned at step", step(median.learned_at), step(worst.learned_at))?;
+    }
     row("failures per 1000", format!("{:.1}", median.failures_per_1000), format!("{:.1}", worst.failures_per_1000))?;
     if let (Some(median), Some(worst)) = (median.laps, worst.laps) {
         row("laps", format!("{median:.1}"), format!("{worst:.1}"))?;

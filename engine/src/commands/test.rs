@@ -2,25 +2,37 @@
 
 use std::sync::atomic::Ordering;
 
-use engine::experiment::{Overrides, TestFigures, test};
-use engine::store::StoredRun;
+use engine::experiment::{Overrides, TestFigures, test, test_combined};
+use engine::store::{Decider, StoredRun};
 
+use super::combine::print_combination;
 use super::folder::TestFolder;
 use super::stop::{INTERRUPTED, on_ctrl_c};
 use crate::cli::TestArguments;
 use crate::console::{Console, ConsoleError};
 
 pub(crate) fn run(arguments: &TestArguments, console: &mut Console) -> Result<u8, ConsoleError> {
-    let StoredRun { plan, seed, policy } = StoredRun::load(&arguments.run)?;
+    let StoredRun { plan, seed, decider } = StoredRun::load(&arguments.run)?;
     let (world, set) = (arguments.world.clone(), arguments.set.clone());
     let plan = plan.with_changes(&Overrides { world, steps: None, test_steps: arguments.steps, set })?;
     let stop = on_ctrl_c()?;
-    let tested = test(&plan, &policy, arguments.seed.unwrap_or(seed), &stop)?;
+    let test_seed = arguments.seed.unwrap_or(seed);
+    let (tested, combined) = match &decider {
+        Decider::Learned(policy) => (test(&plan, policy, test_seed, &stop)?, None),
+        Decider::Combined(members) => {
+            let combined = test_combined(&plan, members, test_seed, &stop)?;
+            (combined.run, Some(combined.figures))
+        }
+    };
     if let Some(out) = &arguments.out {
         TestFolder::create(out)?.write(&plan, &tested)?;
     }
     console.json(&tested.figures)?;
-    console.line(&format!("behaviour: {} in {}, learned with seed {seed}", plan.behaviour.name(), plan.layout.name))?;
+    let how = if combined.is_some() { "combined" } else { "learned" };
+    console.line(&format!("behaviour: {} in {}, {how} with seed {seed}", plan.behaviour.name(), plan.layout.name))?;
+    if let Some(combined) = &combined {
+        print_combination(console, combined)?;
+    }
     print_figures(console, &tested.figures)?;
     if stop.load(Ordering::Relaxed) {
         return Ok(INTERRUPTED);

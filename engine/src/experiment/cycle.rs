@@ -1,14 +1,13 @@
 //! One step of the robot, the order of which is the order of the folders: act, sense, filter, state, judge.
 
-use crate::diagnostic::{Diagnostic, Kind, Result};
-use crate::filter::Chain;
+use crate::diagnostic::{Diagnostic, Result};
 use crate::geometry::Twist;
 use crate::reward::{Facts, Judge};
 use crate::robot::Robot;
 use crate::sensors::observation::{Image, Observation, Scan};
 use crate::state::Grid;
 
-use super::Plan;
+use super::{Eyes, Plan};
 
 /// What one step led to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,12 +31,12 @@ pub struct Step {
 /// A robot with what turns its observations into states and rewards. It does not know who chooses the actions.
 pub struct Cycle<R> {
     robot: R,
-    chain: Chain,
-    grid: Grid,
+    /// The script's own first; the judge looks through these.
+    eyes: Vec<Eyes>,
+    states: Vec<usize>,
     judge: Judge,
     actions: Vec<Twist>,
     observation: Observation,
-    state: usize,
     index: u64,
     since_recovery: u64,
 }
@@ -48,6 +47,14 @@ impl<R: Robot> Cycle<R> {
     /// # Errors
     /// If the plan's filters, grid or script do not work, or a sensor fails.
     pub fn new(plan: &Plan, robot: R) -> Result<Self> {
+        Self::with_eyes(plan, robot, Vec::new())
+    }
+
+    /// The same for policies that perceive in other ways than the script: one more state for each of `others`.
+    ///
+    /// # Errors
+    /// As [`Cycle::new`].
+    pub fn with_eyes(plan: &Plan, robot: R, mut others: Vec<Eyes>) -> Result<Self> {
         let settings = &plan.settings;
         let observation = Observation {
             image: Image::new(settings.camera.width_px as usize, settings.camera.height_px as usize),
@@ -56,14 +63,14 @@ impl<R: Robot> Cycle<R> {
             fallen: false,
             odometry: Twist::default(),
         };
+        others.insert(0, Eyes::new(plan.chain()?, plan.grid()?));
         let mut cycle = Self {
             robot,
-            chain: plan.chain()?,
-            grid: plan.grid()?,
+            states: vec![0; others.len()],
+            eyes: others,
             judge: plan.judge()?,
             actions: settings.actions.clone(),
             observation,
-            state: 0,
             index: 0,
             since_recovery: 0,
         };
@@ -73,10 +80,16 @@ impl<R: Robot> Cycle<R> {
         Ok(cycle)
     }
 
-    /// The present state.
+    /// The present state, as the script perceives it.
     #[must_use]
-    pub const fn state(&self) -> usize {
-        self.state
+    pub fn state(&self) -> usize {
+        self.states[0]
+    }
+
+    /// The present states: the script's own, then one for each of the other eyes.
+    #[must_use]
+    pub fn states(&self) -> &[usize] {
+        &self.states
     }
 
     /// Carries out an action and judges what came of it.
@@ -84,7 +97,7 @@ impl<R: Robot> Cycle<R> {
     /// # Errors
     /// If a sensor, a filter or the script fails; the message names the step.
     pub fn step(&mut self, action: usize) -> Result<Step> {
-        let (index, state) = (self.index, self.state);
+        let (index, state) = (self.index, self.state());
         self.robot.act(self.actions[action])?;
         self.index += 1;
         self.since_recovery += 1;
@@ -96,7 +109,7 @@ impl<R: Robot> Cycle<R> {
             state,
             action,
             reward: verdict.reward,
-            next_state: self.state,
+            next_state: self.state(),
             failed: verdict.recover,
             contact: self.observation.contact,
         })
@@ -116,26 +129,25 @@ impl<R: Robot> Cycle<R> {
     /// Sense, filter, state.
     fn perceive(&mut self) -> Result<()> {
         self.robot.observe(&mut self.observation)?;
-        let mask = self
-            .chain
-            .apply(&self.observation.image)
-            .map_err(|error| Box::new(Diagnostic::new(Kind::Limit, "E-FILTER", format!("a filter failed: {error}"))))?;
-        self.state = self.grid.encode(mask);
+        for (eyes, state) in self.eyes.iter_mut().zip(&mut self.states) {
+            *state = eyes.perceive(&self.observation.image)?;
+        }
         Ok(())
     }
 
     fn fill_facts(&mut self, action: usize) {
+        let grid = &self.eyes[0].grid;
         let facts = self.judge.facts_mut();
         let twist = self.actions[action];
         facts.ranges_m.clone_from(&self.observation.scan.ranges_m);
         facts.cells.clear();
-        let shares = self.grid.counts().iter().enumerate();
-        facts.cells.extend(shares.map(|(cell, count)| *count as f32 / self.grid.area_px(cell) as f32));
-        facts.grid = self.grid.size();
-        facts.seen = self.grid.occupied().contains(&true);
+        let shares = grid.counts().iter().enumerate();
+        facts.cells.extend(shares.map(|(cell, count)| *count as f32 / grid.area_px(cell) as f32));
+        facts.grid = grid.size();
+        facts.seen = grid.occupied().contains(&true);
         let pixels = self.observation.image.width_px * self.observation.image.height_px;
-        facts.coverage = f64::from(self.grid.counts().iter().sum::<u32>()) / pixels as f64;
-        facts.state = self.state;
+        facts.coverage = f64::from(grid.counts().iter().sum::<u32>()) / pixels as f64;
+        facts.state = self.states[0];
         facts.action = action;
         facts.action_linear = twist.linear_m_per_s;
         facts.action_angular = twist.angular_rad_per_s;
@@ -171,16 +183,16 @@ impl<R: Robot> Cycle<R> {
         &self.observation
     }
 
-    /// The last mask.
+    /// The last mask of the script's own filters.
     #[must_use]
     pub fn mask(&self) -> &[u8] {
-        self.chain.mask()
+        self.eyes[0].chain.mask()
     }
 
-    /// The grid, with its last counts.
+    /// The script's own grid, with its last counts.
     #[must_use]
     pub fn grid(&self) -> &Grid {
-        &self.grid
+        &self.eyes[0].grid
     }
 }
 

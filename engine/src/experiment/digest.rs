@@ -2,7 +2,6 @@
 
 use super::Step;
 use crate::geometry::Pose;
-use crate::learner::QTable;
 use sha2::{Digest, Sha256};
 
 /// SHA-256 over every step (state, action, reward, failure, true pose) and the learned table.
@@ -28,9 +27,9 @@ impl StateHash {
         self.hasher.update(record);
     }
 
-    /// The hash as 64 hexadecimal digits.
-    pub(super) fn finish(mut self, table: &QTable) -> String {
-        for value in table.values() {
+    /// The hash as 64 hexadecimal digits, `values` of a learned table included.
+    pub(super) fn finish(mut self, values: &[f64]) -> String {
+        for value in values {
             self.hasher.update(value.to_le_bytes());
         }
         hex(&self.hasher.finalize())

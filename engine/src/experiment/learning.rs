@@ -88,6 +88,6 @@ pub fn learn(plan: &Plan, seed: u64, stop: &AtomicBool, report: &(dyn Fn(Progres
         tally,
         policy: learner.policy(),
         early: early.finish(),
-        state_hash: hash.finish(learner.table()),
+        state_hash: hash.finish(learner.table().values()),
     })
 }

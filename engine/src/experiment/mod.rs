@@ -2,8 +2,11 @@
 //!
 //! Nothing here prints, reads a clock or writes a file.
 
+mod combination;
 mod cycle;
 mod digest;
+mod disagreement;
+mod eyes;
 mod learning;
 mod plan;
 mod seeds;
@@ -13,12 +16,15 @@ mod testing;
 mod trail;
 mod truth;
 
+pub use combination::Member;
 pub use cycle::{Cycle, Step};
+pub use disagreement::{CombinationFigures, Disagreement, DisagreementFigures, Disagreements, MemberFigures};
+pub use eyes::Eyes;
 pub use learning::{Learned, Progress, learn};
 pub use plan::{Overrides, Plan};
 pub use seeds::in_parallel;
 pub use summary::{RuleTotal, Spread, Summary, TestFigures, learned_at};
 pub use tally::{Tally, WINDOW_STEPS, Window};
-pub use testing::{TestRun, test};
+pub use testing::{CombinedRun, TestRun, test, test_combined};
 pub use trail::Trail;
 pub use truth::{Spells, Truth};

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::combination;
 use crate::diagnostic::{Diagnostic, Kind, Result, nearest_name, printable};
 use crate::filter::Chain;
 use crate::geometry::Twist;
@@ -67,6 +68,7 @@ impl Plan {
     /// # Errors
     /// As [`Plan::new`].
     pub fn with_layout(behaviour: Arc<Behaviour>, settings: Settings, layout: Arc<Layout>) -> Result<Self> {
+        combination::check(&behaviour, &settings)?;
         let plan = Self { behaviour, settings, layout };
         plan.chain()?;
         plan.grid()?;

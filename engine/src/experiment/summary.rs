@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::truth::Truth;
-use super::{Learned, Plan, Tally, WINDOW_STEPS};
+use super::{CombinationFigures, CombinedRun, Learned, Member, Plan, Tally, WINDOW_STEPS};
 
 /// Reinforcement of a window from which it counts as learned.
 const GOOD_WINDOW: f64 = -1.0;
@@ -11,6 +11,8 @@ const GOOD_WINDOW: f64 = -1.0;
 const GOOD_WINDOWS: usize = 4;
 /// A policy does its task if it makes this much of 0.2 m/s net along the route.
 const TASK_SPEED_M_PER_S: f64 = 0.5 * 0.2;
+/// A combination is good up to so many failures in 1,000 steps of its test.
+const FEW_FAILURES: f64 = 10.0;
 
 /// One seed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -31,7 +33,7 @@ pub struct Summary {
     pub reinforcement_per_400: Vec<f64>,
     /// What each rule did while learning.
     pub rules: Vec<RuleTotal>,
-    /// How many states were visited.
+    /// How many states were visited; of a combination, how many its policies know.
     pub states_seen: usize,
     /// The frozen policy's test.
     pub test: TestFigures,
@@ -39,6 +41,10 @@ pub struct Summary {
     pub state_hash: String,
     /// Whether it was stopped before its steps were done.
     pub interrupted: bool,
+    /// The policies that were combined and where they disagree; absent from a behaviour that learns. Nothing was learned
+    /// then: `steps` is 0, `learned_at` null, the curve empty, and rules and hash are those of the test.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub combination: Option<CombinationFigures>,
 }
 
 /// What one rule did.
@@ -119,11 +125,6 @@ impl Summary {
     #[must_use]
     pub fn new(plan: &Plan, learned: &Learned, test: TestFigures, seconds: f64) -> Self {
         let curve = learned.tally.curve();
-        let rules = plan.behaviour.rules().iter().enumerate().map(|(index, rule)| RuleTotal {
-            name: rule.name.clone(),
-            fired: learned.tally.fired[index],
-            total: (0..learned.tally.windows.len()).map(|window| learned.tally.by_rule(window)[index]).sum(),
-        });
         Self {
             behaviour: plan.behaviour.name().to_owned(),
             world: plan.layout.name.clone(),
@@ -132,19 +133,55 @@ impl Summary {
             steps_per_second: ((learned.steps + test.steps) as f64 / seconds.max(1e-9)).round(),
             learned_at: learned_at(&curve[..(learned.steps / WINDOW_STEPS) as usize]),
             reinforcement_per_400: curve,
-            rules: rules.collect(),
+            rules: rule_totals(plan, &learned.tally),
             states_seen: learned.policy.rows().iter().flatten().count(),
             interrupted: learned.steps < plan.settings.run.steps || test.steps < plan.settings.run.test_steps,
             state_hash: learned.state_hash.clone(),
+            combination: None,
             test,
         }
     }
 
-    /// Whether it was learned and, in a world with a route, gets along it.
+    /// The figures of a combination, which learns nothing.
+    #[must_use]
+    pub fn of_combination(plan: &Plan, members: &[Member], tested: &CombinedRun, seed: u64, seconds: f64) -> Self {
+        let test = tested.run.figures.clone();
+        Self {
+            behaviour: plan.behaviour.name().to_owned(),
+            world: plan.layout.name.clone(),
+            seed,
+            steps: 0,
+            steps_per_second: (test.steps as f64 / seconds.max(1e-9)).round(),
+            learned_at: None,
+            reinforcement_per_400: Vec::new(),
+            rules: rule_totals(plan, &tested.run.tally),
+            states_seen: members.iter().map(|member| member.policy.rows().iter().flatten().count()).sum(),
+            interrupted: test.steps < plan.settings.run.test_steps,
+            state_hash: tested.run.state_hash.clone(),
+            combination: Some(tested.figures.clone()),
+            test,
+        }
+    }
+
+    /// Whether it was learned and, in a world with a route, gets along it. A combination learns nothing: instead, it must
+    /// fail at most 10 times in 1,000 steps of its test.
     #[must_use]
     pub fn is_good(&self) -> bool {
-        self.learned_at.is_some() && self.test.does_task != Some(false)
+        let fails_little = match self.combination {
+            Some(_) => self.test.failures_per_1000 <= FEW_FAILURES,
+            None => self.learned_at.is_some(),
+        };
+        fails_little && self.test.does_task != Some(false)
     }
+}
+
+fn rule_totals(plan: &Plan, tally: &Tally) -> Vec<RuleTotal> {
+    let total = |(index, rule): (usize, &crate::reward::RuleText)| RuleTotal {
+        name: rule.name.clone(),
+        fired: tally.fired[index],
+        total: (0..tally.windows.len()).map(|window| tally.by_rule(window)[index]).sum(),
+    };
+    plan.behaviour.rules().iter().enumerate().map(total).collect()
 }
 
 /// Many seeds of one behaviour.
@@ -154,7 +191,7 @@ pub struct Spread {
     pub behaviour: String,
     /// Name of the world.
     pub world: String,
-    /// How many seeds learned.
+    /// How many seeds learned; of a combination, how many are good.
     pub converged: usize,
     /// The median seed's figures, each taken on its own.
     pub median: Figures,
@@ -214,7 +251,10 @@ impl Spread {
         });
         let (behaviour, world) =
             seeds.first().map_or_else(Default::default, |seed| (seed.behaviour.clone(), seed.world.clone()));
-        let converged = seeds.iter().filter(|seed| seed.learned_at.is_some()).count();
+        let converged = seeds
+            .iter()
+            .filter(|seed| seed.learned_at.is_some() || (seed.combination.is_some() && seed.is_good()))
+            .count();
         Self { behaviour, world, converged, median, worst, seeds }
     }
 }

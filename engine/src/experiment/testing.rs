@@ -2,15 +2,17 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::digest::StateHash;
 use super::summary::TestFigures;
 use super::trail::{Recorder, Trail};
 use super::truth::Truth;
-use super::{Cycle, Plan, Tally, WINDOW_STEPS};
+use super::{CombinationFigures, Cycle, Disagreements, Eyes, Member, Plan, Tally, WINDOW_STEPS};
 use crate::diagnostic::Result;
-use crate::learner::Policy;
+use crate::learner::{Combined, Policy};
 use crate::random::{Random, Stream};
 use crate::robot::SimulatedRobot;
 use crate::sensors::observation::Image;
+use crate::settings::Settings;
 
 /// Steps of the test whose path is kept for drawing.
 const TRAIL_STEPS: u64 = 2 * WINDOW_STEPS;
@@ -43,6 +45,21 @@ pub struct TestRun {
     pub trail: Trail,
     /// One frame of it.
     pub snapshot: Snapshot,
+    /// What was counted.
+    pub tally: Tally,
+    /// Hash over every step, 64 hexadecimal digits.
+    pub state_hash: String,
+}
+
+/// What a test of several policies found.
+#[derive(Debug, Clone)]
+pub struct CombinedRun {
+    /// The test itself.
+    pub run: TestRun,
+    /// Who decided, and where they disagreed.
+    pub figures: CombinationFigures,
+    /// All disagreements.
+    pub disagreements: Disagreements,
 }
 
 /// Tests a frozen policy for the plan's `run.test_steps`, or until `stop` is set.
@@ -50,20 +67,54 @@ pub struct TestRun {
 /// # Errors
 /// If a sensor, a filter or the script fails.
 pub fn test(plan: &Plan, policy: &Policy, seed: u64, stop: &AtomicBool) -> Result<TestRun> {
+    let mut softmax = policy.softmax(&plan.settings.learner);
+    let mut random = Random::new(seed, Stream::Test);
+    drive(plan, Vec::new(), seed, stop, |states| policy.choose(states[0], &mut softmax, &mut random))
+}
+
+/// Tests several policies as one, as [`test`] does; the plan's script judges.
+///
+/// # Errors
+/// As [`test`], and if a policy's filters or grid do not suit the plan's camera.
+pub fn test_combined(plan: &Plan, members: &[Member], seed: u64, stop: &AtomicBool) -> Result<CombinedRun> {
+    let Settings { combine, learner, run, .. } = &plan.settings;
+    let policies: Vec<&Policy> = members.iter().map(|member| &member.policy).collect();
+    let mut combined = Combined::new(&policies, combine, learner);
+    let mut random = Random::new(seed, Stream::Test);
+    let mut disagreements = Disagreements::new(&combined, run.test_steps);
+    let eyes = members.iter().map(|member| member.eyes(plan)).collect::<Result<Vec<_>>>()?;
+    let run = drive(plan, eyes, seed, stop, |states| {
+        // The first state is the script's own.
+        let decision = combined.choose(&states[1..], &mut random);
+        disagreements.count(&states[1..], combined.votes(), &decision);
+        decision.action
+    })?;
+    let figures = CombinationFigures::new(plan, members, &disagreements);
+    Ok(CombinedRun { run, figures, disagreements })
+}
+
+fn drive(
+    plan: &Plan,
+    eyes: Vec<Eyes>,
+    seed: u64,
+    stop: &AtomicBool,
+    mut choose: impl FnMut(&[usize]) -> usize,
+) -> Result<TestRun> {
     let settings = &plan.settings;
     let world_seed = seed.wrapping_add(TEST_SEED_OFFSET);
-    let mut cycle = Cycle::new(plan, SimulatedRobot::new(&plan.layout, settings, world_seed)?)?;
-    let mut softmax = policy.softmax(&settings.learner);
-    let mut random = Random::new(seed, Stream::Test);
+    let robot = SimulatedRobot::new(&plan.layout, settings, world_seed)?;
+    let mut cycle = Cycle::with_eyes(plan, robot, eyes)?;
+    let mut hash = StateHash::default();
     let mut tally = Tally::new(plan.behaviour.rules().len(), settings.run.test_steps);
     let mut truth = Truth::new(cycle.robot().world(), settings.run.period_s, settings.run.test_steps);
     let mut trail = Recorder::new(TRAIL_STEPS, cycle.robot().world());
     let mut snapshot = None;
     let mut steps = 0;
     while steps < settings.run.test_steps {
-        let action = policy.choose(cycle.state(), &mut softmax, &mut random);
+        let action = choose(cycle.states());
         let step = cycle.step(action)?;
         steps += 1;
+        hash.step(&step, cycle.robot().world().body().pose);
         truth.follow(cycle.robot().world());
         trail.follow(cycle.robot().world(), step.failed);
         if steps <= SNAPSHOT_STEP {
@@ -80,7 +131,8 @@ pub fn test(plan: &Plan, policy: &Policy, seed: u64, stop: &AtomicBool) -> Resul
     }
     let lap_m = plan.layout.lap.map(|lap| plan.layout.routes[lap].length_m());
     let figures = TestFigures::new(steps, settings.run.period_s, lap_m, &tally, &truth);
-    Ok(TestRun { figures, trail: trail.finish(), snapshot: snapshot.unwrap_or_else(|| take(&cycle)) })
+    let snapshot = snapshot.unwrap_or_else(|| take(&cycle));
+    Ok(TestRun { figures, trail: trail.finish(), snapshot, tally, state_hash: hash.finish(&[]) })
 }
 
 fn take(cycle: &Cycle<SimulatedRobot>) -> Snapshot {

@@ -36,6 +36,7 @@
 //! | softmax subtracts the greatest value first | exp(-1 / 0.009) underflows in single precision otherwise |
 
 mod backup;
+mod combined;
 mod mirror;
 mod policy;
 mod q_table;
@@ -52,6 +53,7 @@ use mirror::Mirrored;
 use replay::Replay;
 
 pub use backup::{Backup, Transition};
+pub use combined::{Combined, Decision};
 pub use mirror::Mirror;
 pub use policy::{Policy, PolicyRow};
 pub use q_table::QTable;

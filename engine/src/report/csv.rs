@@ -37,7 +37,7 @@ pub fn curve_csv(window_steps: u64, rules: &[String], rows: &[CurveRow]) -> Stri
 }
 
 /// A field as RFC 4180 wants it.
-fn quoted(field: &str) -> String {
+pub(super) fn quoted(field: &str) -> String {
     if field.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", field.replace('"', "\"\""))
     } else {

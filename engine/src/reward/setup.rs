@@ -5,7 +5,7 @@ use super::source::Code;
 use super::views::number;
 use crate::diagnostic::{Diagnostic, Kind, Result, printable};
 use crate::geometry::Twist;
-use crate::settings::{self, FilterSettings, Settings, Value};
+use crate::settings::{self, FilterSettings, PolicySettings, Settings, Value};
 use rhai::{AST, ASTNode, Dynamic, Engine, Expr, FnCallExpr, Map, NativeCallContext, Position, Stmt};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -42,6 +42,12 @@ pub const SETUP: &[SetupCall] = &[
     row("grid", "grid(#{ rows: 3, columns: 3 });", "How a filtered image becomes a state."),
     row("learner", "learner(\"ttd\", #{ step_size: 0.2 });", "The way of learning and its parameters."),
     row("recovery", "recovery(\"nearest\", #{ yaw_deg: 8.6 });", "What `then recover` does."),
+    row(
+        "policy",
+        "policy(\"avoid\", \"runs/avoid/1\");",
+        "A learned policy to combine: a name, and its run or its file.",
+    ),
+    row("combine", "combine(\"priority\", #{ margin: 0.05 });", "How two or more policies become one."),
 ];
 
 /// Most set-up calls in one script.
@@ -151,13 +157,23 @@ impl Setup<'_> {
                 self.settings.actions = self.actions(actions)?;
                 self.mark("actions".to_owned(), self.call)
             }
-            ("learner" | "recovery", Some(kind), map, None) if kind.is_string() => {
-                let key = if name == "learner" { "kind" } else { "to" };
+            ("policy", Some(policy), Some(path), None) if policy.is_string() && path.is_string() => {
+                let policy = PolicySettings { name: self.word(policy, form)?, path: self.word(path, form)? };
+                let place = format!("policy:{}", self.settings.policies.len());
+                self.settings.policies.push(policy);
+                self.mark(place, self.call)
+            }
+            ("learner" | "recovery" | "combine", Some(kind), map, None) if kind.is_string() => {
+                let key = match name {
+                    "learner" => "kind",
+                    "recovery" => "to",
+                    _ => "way",
+                };
                 let kind = self.word(kind, form)?;
                 self.set(name, key, &Value::Text(kind), self.call)?;
                 map.map_or(Ok(()), |map| self.group(name, map, form))
             }
-            (group, Some(map), None, None) if !matches!(group, "world" | "filter" | "actions") => {
+            (group, Some(map), None, None) if !matches!(group, "world" | "filter" | "actions" | "policy") => {
                 self.group(group, map, form)
             }
             _ => self.wrong(self.call, format!("'{name}' is written otherwise"), "found this", form),

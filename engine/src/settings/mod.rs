@@ -33,6 +33,19 @@ pub struct Settings {
     pub recovery: RecoverySettings,
     /// What drives by itself.
     pub movers: MoverSettings,
+    /// Learned policies to combine, in the order of the script; empty for a behaviour that learns.
+    pub policies: Vec<PolicySettings>,
+    /// How they are combined.
+    pub combine: CombineSettings,
+}
+
+/// A learned policy that a script names.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PolicySettings {
+    /// What the script calls it.
+    pub name: String,
+    /// Its file or the folder of its run, as written.
+    pub path: String,
 }
 
 /// One stage of the filter chain.
@@ -136,6 +149,15 @@ pub struct MoverSettings {
     pub speed: f64,
 }
 
+/// How several policies become one.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs, reason = "every field is documented in the table of settings")]
+pub struct CombineSettings {
+    pub way: String,
+    pub margin: f64,
+    pub scaled: bool,
+}
+
 /// The ways of learning, by name.
 pub const LEARNERS: &[&str] = &["ttd", "ttd-cichosz", "q", "sarsa-lambda"];
 
@@ -204,6 +226,8 @@ impl Default for Settings {
             },
             recovery: RecoverySettings { to: "nearest".to_owned(), distance_m: 1.1, position_m: 0.1, yaw_deg: 8.6 },
             movers: MoverSettings { speed: 1.0 },
+            policies: Vec::new(),
+            combine: CombineSettings { way: "priority".to_owned(), margin: 0.05, scaled: false },
         }
     }
 }

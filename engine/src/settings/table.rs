@@ -167,6 +167,9 @@ settings! {
     recovery.position_m, "metres", Number(0.0, 2.0), "Greatest random shift of that place.";
     recovery.yaw_deg, "degrees", Number(0.0, 180.0), "Greatest random turn of that heading.";
     movers.speed, "times", Number(0.0, 10.0), "How fast everything that drives by itself is, by the speed in the world file.";
+    combine.way, "", Choice(&["priority", "sum"]), "How several policies become one.";
+    combine.margin, "value", Number(0.0, 1000.0), "By priority: best less median value from which a policy decides.";
+    combine.scaled, "", Flag, "By sum: whether each policy's values are divided by their deviation first.";
 }
 
 impl Setting {

@@ -1,10 +1,12 @@
 //! Files that a run leaves and that a later command reads.
 
+mod members;
 mod policy_file;
 mod run_file;
 
-pub use policy_file::{policy_from_toml, policy_to_toml};
-pub use run_file::{StoredRun, run_to_toml};
+pub use members::load_members;
+pub use policy_file::{StoredPolicy, policy_from_toml, policy_to_toml};
+pub use run_file::{Decider, StoredRun, run_to_toml};
 
 use crate::diagnostic::{Diagnostic, Kind, Result, SourceText};
 use std::path::Path;

@@ -2,19 +2,26 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::run_file::FilterEntry;
 use super::toml_error;
 use crate::diagnostic::{Diagnostic, Kind, Result, SourceText};
+use crate::geometry::Twist;
 use crate::learner::{Policy, PolicyRow};
-use crate::settings::Settings;
+use crate::settings::{FilterSettings, GridSettings, Settings};
+use crate::state::MAX_STATES;
 
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
+
+#[derive(Deserialize)]
+struct FormatLine {
+    format: u32,
+}
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct PolicyFile {
     format: u32,
     behaviour: String,
-    filters: Vec<String>,
     rows: u64,
     columns: u64,
     occupied: f64,
@@ -22,6 +29,9 @@ struct PolicyFile {
     states: usize,
     /// Forward speed in m/s and turning speed in rad/s.
     actions: Vec<[f64; 2]>,
+    #[serde(default)]
+    filter: Vec<FilterEntry>,
+    #[serde(default)]
     state: Vec<StateEntry>,
 }
 
@@ -32,6 +42,21 @@ struct StateEntry {
     visits: u64,
     best: usize,
     values: Vec<f64>,
+}
+
+/// A policy as it was stored, with what it perceives and does.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StoredPolicy {
+    /// The behaviour that it learned.
+    pub behaviour: String,
+    /// Its filter chain.
+    pub filters: Vec<FilterSettings>,
+    /// Its grid.
+    pub grid: GridSettings,
+    /// Its actions.
+    pub actions: Vec<Twist>,
+    /// What it learned.
+    pub policy: Policy,
 }
 
 /// The text of `policy.toml`; states that were never visited are left out.
@@ -47,13 +72,13 @@ pub fn policy_to_toml(behaviour: &str, settings: &Settings, policy: &Policy) -> 
     let file = PolicyFile {
         format: FORMAT,
         behaviour: behaviour.to_owned(),
-        filters: filters(settings),
         rows: settings.grid.rows,
         columns: settings.grid.columns,
         occupied: settings.grid.occupied,
         fill: settings.grid.fill,
         states: policy.rows().len(),
-        actions: actions(settings),
+        actions: settings.actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
+        filter: settings.filters.iter().map(FilterEntry::new).collect(),
         state: state.collect(),
     };
     toml::to_string(&file).map_err(|error| {
@@ -61,49 +86,87 @@ pub fn policy_to_toml(behaviour: &str, settings: &Settings, policy: &Policy) -> 
     })
 }
 
+impl StoredPolicy {
+    /// Reads `policy.toml`.
+    ///
+    /// # Errors
+    /// If the file is damaged or of another format.
+    pub fn parse(source: &SourceText) -> Result<Self> {
+        let format: FormatLine = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
+        if format.format != FORMAT {
+            let message = format!("has format {}, this engine reads format {FORMAT}", format.format);
+            return Err(unfit(source, &message, "learn the behaviour again"));
+        }
+        let file: PolicyFile = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
+        let grid = GridSettings { rows: file.rows, columns: file.columns, occupied: file.occupied, fill: file.fill };
+        // A state of the largest grid takes 8 bytes even if it was never met: the number is checked before it is believed.
+        if file.states > MAX_STATES || file.actions.is_empty() {
+            return Err(unfit(source, "has no actions or too many states", "learn the behaviour again"));
+        }
+        let mut rows = vec![None; file.states];
+        for StateEntry { index, visits, values, .. } in file.state {
+            let finite = values.iter().all(|value| value.is_finite());
+            if index >= file.states || values.len() != file.actions.len() || !finite || rows[index].is_some() {
+                let message = format!("has a damaged entry for state {index}");
+                return Err(unfit(source, &message, "learn the behaviour again"));
+            }
+            rows[index] = Some(PolicyRow { visits, values });
+        }
+        Ok(Self {
+            behaviour: file.behaviour,
+            filters: file.filter.iter().map(FilterEntry::settings).collect(),
+            grid,
+            policy: Policy::new(file.actions.len(), rows),
+            actions: file.actions.iter().map(|[linear, angular]| Twist::new(*linear, *angular)).collect(),
+        })
+    }
+
+    /// Whether it suits the grid shape, of so many states, and the actions of these settings.
+    ///
+    /// # Errors
+    /// What differs: its own value, then the settings'.
+    pub fn suits(&self, settings: &Settings, states: usize) -> std::result::Result<(), [String; 2]> {
+        let (own, grid) = (&self.grid, &settings.grid);
+        let shape = |rows: u64, columns: u64| format!("a grid of {rows}x{columns}");
+        let fill = |fill: bool| format!("a grid {} column fill", if fill { "with" } else { "without" });
+        if (own.rows, own.columns) != (grid.rows, grid.columns) {
+            return Err([shape(own.rows, own.columns), shape(grid.rows, grid.columns)]);
+        }
+        if own.fill != grid.fill {
+            return Err([fill(own.fill), fill(grid.fill)]);
+        }
+        if self.policy.rows().len() != states {
+            return Err([format!("{} states", self.policy.rows().len()), format!("{states} states")]);
+        }
+        if self.actions.len() != settings.actions.len() {
+            return Err([format!("{} actions", self.actions.len()), format!("{} actions", settings.actions.len())]);
+        }
+        let motion = |action: usize, twist: &Twist| {
+            format!("[{}, {}] as action {action}", twist.linear_m_per_s, twist.angular_rad_per_s)
+        };
+        let pairs = self.actions.iter().zip(&settings.actions).enumerate();
+        match pairs.into_iter().find(|(_, (own, twist))| own != twist) {
+            Some((action, (own, twist))) => Err([motion(action, own), motion(action, twist)]),
+            None => Ok(()),
+        }
+    }
+}
+
 /// Reads `policy.toml` for a plan with these settings and so many states.
 ///
 /// # Errors
 /// If the file is damaged, or was learned with another grid or other actions.
 pub fn policy_from_toml(source: &SourceText, settings: &Settings, states: usize) -> Result<Policy> {
-    let file: PolicyFile = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
-    let unfit = |message: String| -> Box<Diagnostic> {
-        Box::new(Diagnostic::new(Kind::State, "E-POLICY", format!("'{}' {message}", source.path.display())))
-    };
-    if file.format != FORMAT {
-        return Err(unfit(format!("has format {}, this engine reads format {FORMAT}", file.format)));
-    }
-    let grid = &settings.grid;
-    if (file.rows, file.columns, file.fill, file.states) != (grid.rows, grid.columns, grid.fill, states) {
-        return Err(unfit(format!(
-            "was learned on a grid of {}x{}, this run has {}x{}",
-            file.rows, file.columns, grid.rows, grid.columns
-        )));
-    }
-    if file.actions != actions(settings) {
-        return Err(unfit("was learned with other actions than this run has".to_owned()));
-    }
-    let mut rows = vec![None; states];
-    for StateEntry { index, visits, values, .. } in file.state {
-        let fits = index < states && values.len() == file.actions.len() && values.iter().all(|value| value.is_finite());
-        if !fits || rows[index].is_some() {
-            return Err(unfit(format!("has a damaged entry for state {index}")));
-        }
-        rows[index] = Some(PolicyRow { visits, values });
-    }
-    Ok(Policy::new(file.actions.len(), rows))
+    let stored = StoredPolicy::parse(source)?;
+    stored.suits(settings, states).map_err(|[own, wanted]| {
+        unfit(source, &format!("was learned with {own}, this run has {wanted}"), "learn the behaviour again")
+    })?;
+    Ok(stored.policy)
 }
 
-fn actions(settings: &Settings) -> Vec<[f64; 2]> {
-    settings.actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect()
-}
-
-fn filters(settings: &Settings) -> Vec<String> {
-    let text = |filter: &crate::settings::FilterSettings| {
-        let parameters: Vec<_> = filter.parameters.iter().map(|(name, value)| format!("{name}: {value}")).collect();
-        format!("{}({})", filter.name, parameters.join(", "))
-    };
-    settings.filters.iter().map(text).collect()
+fn unfit(source: &SourceText, message: &str, help: &str) -> Box<Diagnostic> {
+    let message = format!("'{}' {message}", source.path.display());
+    Box::new(Diagnostic::new(Kind::State, "E-POLICY", message).help(help))
 }
 
 #[cfg(test)]
@@ -126,14 +189,33 @@ mod tests {
     }
 
     #[test]
+    fn filters_are_read_back_with_their_parameters() {
+        let mut settings = Settings::default();
+        let parameters = vec![("saturation".to_owned(), 0.4), ("hue_deg".to_owned(), 120.0)];
+        settings.filters = vec![FilterSettings { name: "colour".to_owned(), parameters }];
+        let source = SourceText::new("policy.toml", policy_to_toml("wall", &settings, &policy()).unwrap());
+        let mut read = StoredPolicy::parse(&source).unwrap().filters;
+        read[0].parameters.sort_by_key(|(name, _)| std::cmp::Reverse(name.clone()));
+        assert_eq!(read, settings.filters);
+    }
+
+    #[test]
+    fn the_first_format_is_named_and_not_guessed_at() {
+        let old = "format = 1\nbehaviour = \"wall\"\nfilters = [\"sobel(threshold: 60)\"]\n";
+        let error = StoredPolicy::parse(&SourceText::new("policy.toml", old)).unwrap_err();
+        assert_eq!(error.message, "'policy.toml' has format 1, this engine reads format 2");
+    }
+
+    #[test]
     fn another_grid_or_other_actions_are_refused() {
         let mut settings = Settings::default();
         let source = SourceText::new("policy.toml", policy_to_toml("wall", &settings, &policy()).unwrap());
         settings.grid.rows = 4;
-        assert!(policy_from_toml(&source, &settings, 125).unwrap_err().message.contains("grid of 3x3"));
+        assert!(policy_from_toml(&source, &settings, 125).unwrap_err().message.contains("a grid of 3x3"));
         settings.grid.rows = 3;
         settings.actions.pop();
-        assert!(policy_from_toml(&source, &settings, 64).unwrap_err().message.contains("other actions"));
+        let error = policy_from_toml(&source, &settings, 64).unwrap_err();
+        assert!(error.message.contains("with 14 actions, this run has 13 actions"), "{}", error.message);
     }
 
     #[test]

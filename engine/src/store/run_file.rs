@@ -1,5 +1,6 @@
 //! `run.toml`: all that is needed to do a run again, script and world included.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -7,9 +8,10 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use toml::Table;
 
+use super::members::stored_members;
 use super::{policy_from_toml, read_stored, toml_error};
 use crate::diagnostic::{Diagnostic, Kind, Result, SourceText};
-use crate::experiment::Plan;
+use crate::experiment::{Member, Plan};
 use crate::geometry::Twist;
 use crate::learner::Policy;
 use crate::reward::Behaviour;
@@ -30,13 +32,28 @@ struct RunFile {
     settings: Table,
     script: TextEntry,
     world: TextEntry,
+    /// Of a combination: the policies, in the order of the script.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    policy: Vec<TextEntry>,
 }
 
+/// A filter stage with the parameters that were set.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct FilterEntry {
+pub(super) struct FilterEntry {
     name: String,
-    parameters: Table,
+    parameters: BTreeMap<String, f64>,
+}
+
+impl FilterEntry {
+    pub(super) fn new(filter: &FilterSettings) -> Self {
+        Self { name: filter.name.clone(), parameters: filter.parameters.iter().cloned().collect() }
+    }
+
+    pub(super) fn settings(&self) -> FilterSettings {
+        let parameters = self.parameters.iter().map(|(key, value)| (key.clone(), *value)).collect();
+        FilterSettings { name: self.name.clone(), parameters }
+    }
 }
 
 #[derive(Serialize, Deserialize)]
@@ -66,11 +83,11 @@ fn sha256(text: &str) -> String {
     Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The text of `run.toml`.
+/// The text of `run.toml`; `members` are the policies of a combination, none for a behaviour that learns.
 ///
 /// # Errors
 /// Never in practice: only if the settings cannot be written as TOML.
-pub fn run_to_toml(plan: &Plan, seed: u64) -> Result<String> {
+pub fn run_to_toml(plan: &Plan, members: &[Member], seed: u64) -> Result<String> {
     let settings = &plan.settings;
     let mut table = Table::new();
     for row in SETTINGS {
@@ -84,20 +101,17 @@ pub fn run_to_toml(plan: &Plan, seed: u64) -> Result<String> {
             group.insert(row.key.to_owned(), value);
         }
     }
-    let filter = |filter: &FilterSettings| FilterEntry {
-        name: filter.name.clone(),
-        parameters: filter.parameters.iter().map(|(key, value)| (key.clone(), toml::Value::Float(*value))).collect(),
-    };
     let file = RunFile {
         format: FORMAT,
         engine: env!("CARGO_PKG_VERSION").to_owned(),
         behaviour: plan.behaviour.name().to_owned(),
         seed,
         actions: settings.actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
-        filters: settings.filters.iter().map(filter).collect(),
+        filters: settings.filters.iter().map(FilterEntry::new).collect(),
         settings: table,
         script: TextEntry::new(plan.behaviour.source()),
         world: TextEntry::new(&plan.layout.source),
+        policy: members.iter().map(|member| TextEntry::new(&member.source)).collect(),
     };
     toml::to_string_pretty(&file).map_err(|error| {
         Box::new(Diagnostic::new(Kind::State, "E-RUN-FILE", format!("the settings cannot be written: {error}")))
@@ -110,12 +124,20 @@ pub struct StoredRun {
     pub plan: Plan,
     /// The seed.
     pub seed: u64,
-    /// What was learned.
-    pub policy: Policy,
+    /// What decides.
+    pub decider: Decider,
+}
+
+/// What decides in a stored run.
+pub enum Decider {
+    /// The policy that the run learned.
+    Learned(Policy),
+    /// The policies that it combined.
+    Combined(Vec<Member>),
 }
 
 impl StoredRun {
-    /// Reads `run.toml` and `policy.toml` of a run's folder.
+    /// Reads `run.toml` of a run's folder, and `policy.toml` unless the run combined policies and so holds them.
     ///
     /// # Errors
     /// If a file is missing, damaged, or of another format.
@@ -131,22 +153,22 @@ impl StoredRun {
         let layout = Arc::new(Layout::parse(file.world.check(&source)?)?);
         let settings = settings(&source, behaviour.settings(), &file)?;
         let plan = Plan::with_layout(behaviour, settings, layout)?;
-        let states = plan.grid()?.states();
-        let policy = policy_from_toml(&read_stored(&folder.join("policy.toml"))?, &plan.settings, states)?;
-        Ok(Self { plan, seed: file.seed, policy })
+        let decider = if plan.settings.policies.is_empty() {
+            let states = plan.grid()?.states();
+            let policy = read_stored(&folder.join("policy.toml"))?;
+            Decider::Learned(policy_from_toml(&policy, &plan.settings, states)?)
+        } else {
+            let texts = file.policy.iter().map(|policy| policy.check(&source)).collect::<Result<Vec<_>>>()?;
+            Decider::Combined(stored_members(&plan, texts)?)
+        };
+        Ok(Self { plan, seed: file.seed, decider })
     }
 }
 
 fn settings(source: &SourceText, written: &Settings, file: &RunFile) -> Result<Settings> {
     let mut settings = written.clone();
     settings.actions = file.actions.iter().map(|[linear, angular]| Twist::new(*linear, *angular)).collect();
-    let number = |(key, value): (&String, &toml::Value)| Some((key.clone(), value.as_float()?));
-    settings.filters = (file.filters.iter())
-        .map(|filter| FilterSettings {
-            name: filter.name.clone(),
-            parameters: filter.parameters.iter().filter_map(number).collect(),
-        })
-        .collect();
+    settings.filters = file.filters.iter().map(FilterEntry::settings).collect();
     for (group, keys) in &file.settings {
         for (key, value) in keys.as_table().into_iter().flatten() {
             let value = match value {

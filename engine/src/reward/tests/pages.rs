@@ -18,7 +18,7 @@ fn the_page_about_scripts_is_the_generated_one() {
 
 #[test]
 fn every_script_loads() {
-    for name in ["wall", "corridor", "platform", "object"] {
+    for name in ["wall", "corridor", "platform", "object", "avoid", "follow-and-avoid"] {
         let behaviour =
             Behaviour::load(&scripts().join(format!("{name}.rhai"))).unwrap_or_else(|wrong| panic!("{wrong:?}"));
         assert_eq!(behaviour.name(), name);

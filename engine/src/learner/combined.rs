@@ -1,0 +1,237 @@
+//! Several learned policies as one: by priority, or by the sum of their values.
+//!
+//! Let Q_i(a) be the values that policy i gives the actions in the state that it perceives now.
+//!
+//! * **priority**: policy i cares if max_a Q_i(a) - median_a Q_i(a) >= margin. The first one that cares decides; if none
+//!   does, the last one decides. Q(a) = Q_i(a) of the one that decides.
+//! * **sum**: Q(a) = sum over i of (Q_i(a) - mean_a Q_i(a)) / d_i. d_i is 1 or, if scaled, the root mean square of policy
+//!   i's mean-free values over all states that it met: one number for each policy, so that what does not matter to it
+//!   stays small.
+//!
+//! The action is drawn by softmax, equation (3), from Q(a) at the lowest temperature. In a state that it never met a
+//! policy has no values: it does not care, and adds nothing to a sum. Without any values, all actions are equally likely.
+
+use super::q_table::best_of;
+use super::{Policy, Softmax};
+use crate::random::Random;
+use crate::settings::{CombineSettings, LearnerSettings};
+
+/// Two or more policies over the same actions, each with states of its own.
+#[derive(Debug, Clone)]
+pub struct Combined {
+    /// By policy and state; `None` where the policy never met the state.
+    members: Vec<Vec<Option<Row>>>,
+    by_priority: bool,
+    softmax: Softmax,
+    sum: Vec<f64>,
+    votes: Vec<Option<usize>>,
+}
+
+/// What one policy has to say in one state.
+#[derive(Debug, Clone)]
+struct Row {
+    /// Its values as they count: as learned (priority), or mean-free and scaled (sum).
+    values: Vec<f64>,
+    best: usize,
+    cares: bool,
+}
+
+/// What the policies decided together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Decision {
+    /// The action that was drawn.
+    pub action: usize,
+    /// The action with the greatest combined value; `None` if no policy that counts knows its state.
+    pub preferred: Option<usize>,
+    /// By priority: the policy that decided.
+    pub decider: Option<usize>,
+}
+
+impl Combined {
+    /// Combines policies in the order of their priority.
+    #[must_use]
+    pub fn new(policies: &[&Policy], settings: &CombineSettings, learner: &LearnerSettings) -> Self {
+        let actions = policies.first().map_or(0, |policy| policy.actions());
+        let by_priority = settings.way != "sum";
+        let members = policies.iter().map(|policy| {
+            let divisor = if settings.scaled { deviation(policy) } else { 1.0 };
+            let row = |values: &[f64]| {
+                let (best, greatest) = best_of(values);
+                let cares = greatest - median(values) >= settings.margin;
+                let values = if by_priority { values.to_vec() } else { mean_free(values, divisor) };
+                Row { values, best, cares }
+            };
+            policy.rows().iter().map(|known| known.as_ref().map(|known| row(&known.values))).collect()
+        });
+        Self {
+            members: members.collect(),
+            by_priority,
+            softmax: Softmax::new(learner, actions),
+            sum: vec![0.0; actions],
+            votes: vec![None; policies.len()],
+        }
+    }
+
+    /// How many states each policy met.
+    pub fn known_states(&self) -> impl Iterator<Item = usize> {
+        self.members.iter().map(|member| member.iter().flatten().count())
+    }
+
+    /// By policy: its own best action in the last states; `None` where it did not know its state.
+    #[must_use]
+    pub fn votes(&self) -> &[Option<usize>] {
+        &self.votes
+    }
+
+    /// Decides in the states that the policies perceive, one for each policy, in their order.
+    pub fn choose(&mut self, states: &[usize], random: &mut Random) -> Decision {
+        for ((vote, member), state) in self.votes.iter_mut().zip(&self.members).zip(states) {
+            *vote = known(member, *state).map(|row| row.best);
+        }
+        if self.by_priority { self.choose_by_priority(states, random) } else { self.choose_by_sum(states, random) }
+    }
+
+    fn choose_by_priority(&mut self, states: &[usize], random: &mut Random) -> Decision {
+        let rows = self.members.iter().zip(states).map(|(member, state)| known(member, *state));
+        let last = self.members.len().saturating_sub(1);
+        let caring = rows.enumerate().find(|(index, row)| *index == last || row.is_some_and(|row| row.cares));
+        let decider = caring.map(|(index, _)| index);
+        match caring.and_then(|(_, row)| row) {
+            Some(row) => {
+                let action = self.softmax.choose(&row.values, u64::MAX, random);
+                Decision { action, preferred: Some(row.best), decider }
+            }
+            None => Decision { action: random.below(self.sum.len() as u32) as usize, preferred: None, decider },
+        }
+    }
+
+    fn choose_by_sum(&mut self, states: &[usize], random: &mut Random) -> Decision {
+        self.sum.fill(0.0);
+        for row in self.members.iter().zip(states).filter_map(|(member, state)| known(member, *state)) {
+            for (sum, value) in self.sum.iter_mut().zip(&row.values) {
+                *sum += value;
+            }
+        }
+        let preferred = self.votes.iter().any(Option::is_some).then(|| best_of(&self.sum).0);
+        Decision { action: self.softmax.choose(&self.sum, u64::MAX, random), preferred, decider: None }
+    }
+}
+
+fn known(member: &[Option<Row>], state: usize) -> Option<&Row> {
+    member.get(state)?.as_ref()
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
+
+fn mean_free(values: &[f64], divisor: f64) -> Vec<f64> {
+    let mean = mean(values);
+    values.iter().map(|value| (value - mean) / divisor).collect()
+}
+
+/// Half-way between the two middle values of an even number.
+fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let middle = sorted.len() / 2;
+    match (sorted.get(middle.wrapping_sub(1)), sorted.get(middle)) {
+        (Some(below), Some(above)) if sorted.len().is_multiple_of(2) => f64::midpoint(*below, *above),
+        (_, Some(middle)) => *middle,
+        _ => 0.0,
+    }
+}
+
+/// Root mean square of the mean-free values of all known states; 1 if they are all equal.
+fn deviation(policy: &Policy) -> f64 {
+    let free: Vec<f64> = policy.rows().iter().flatten().flat_map(|row| mean_free(&row.values, 1.0)).collect();
+    let squares: Vec<f64> = free.iter().map(|value| value * value).collect();
+    let deviation = mean(&squares).sqrt();
+    if deviation > 0.0 { deviation } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::learner::PolicyRow;
+    use crate::random::Stream;
+    use crate::settings::Settings;
+
+    /// States 0, 1, ... with these values; a state without values was never met.
+    fn policy(rows: &[&[f64]]) -> Policy {
+        let row = |values: &&[f64]| (!values.is_empty()).then(|| PolicyRow { visits: 9, values: values.to_vec() });
+        Policy::new(3, rows.iter().map(row).collect())
+    }
+
+    fn combined(policies: &[Policy], way: &str, margin: f64, scaled: bool) -> Combined {
+        let policies: Vec<&Policy> = policies.iter().collect();
+        let settings = CombineSettings { way: way.to_owned(), margin, scaled };
+        Combined::new(&policies, &settings, &Settings::default().learner)
+    }
+
+    fn decide(combined: &mut Combined, states: &[usize]) -> Decision {
+        combined.choose(states, &mut Random::new(1, Stream::Test))
+    }
+
+    #[test]
+    fn the_first_policy_decides_only_where_it_cares() {
+        // In state 0 the best lies 0.5 above the median, in state 1 only 0.04.
+        let first = policy(&[&[-1.0, -0.5, -1.2], &[-0.5, -0.46, -0.6]]);
+        let second = policy(&[&[0.0, -2.0, -2.0]]);
+        let mut both = combined(&[first, second], "priority", 0.05, false);
+        assert_eq!(decide(&mut both, &[0, 0]), Decision { action: 1, preferred: Some(1), decider: Some(0) });
+        assert_eq!(decide(&mut both, &[1, 0]), Decision { action: 0, preferred: Some(0), decider: Some(1) });
+        assert_eq!(both.votes(), [Some(1), Some(0)]);
+    }
+
+    #[test]
+    fn a_gap_of_exactly_the_margin_is_enough() {
+        let policies = [policy(&[&[0.25, 0.0, -1.0]]), policy(&[&[0.0, 0.0, 5.0]])];
+        assert_eq!(decide(&mut combined(&policies, "priority", 0.25, false), &[0, 0]).decider, Some(0));
+        assert_eq!(decide(&mut combined(&policies, "priority", 0.2501, false), &[0, 0]).decider, Some(1));
+    }
+
+    #[test]
+    fn a_state_never_met_is_left_to_the_next_policy() {
+        let policies = [policy(&[&[]]), policy(&[&[0.0, 9.0, 0.0], &[]])];
+        let mut both = combined(&policies, "priority", 0.0, false);
+        assert_eq!(decide(&mut both, &[0, 0]), Decision { action: 1, preferred: Some(1), decider: Some(1) });
+        assert_eq!(both.votes(), [None, Some(1)]);
+        // The last one decides whether it knows anything or not.
+        let blind = decide(&mut both, &[0, 1]);
+        assert_eq!((blind.preferred, blind.decider), (None, Some(1)));
+    }
+
+    #[test]
+    fn a_sum_prefers_what_suits_both() {
+        // Mean-free: [1, 0.5, -1.5] and [-1.5, 0.5, 1]; their sum [-0.5, 1, -0.5].
+        let policies = [policy(&[&[11.0, 10.5, 8.5]]), policy(&[&[-1.5, 0.5, 1.0]])];
+        let mut both = combined(&policies, "sum", 0.0, false);
+        assert_eq!(decide(&mut both, &[0, 0]), Decision { action: 1, preferred: Some(1), decider: None });
+        assert_eq!(both.sum, [-0.5, 1.0, -0.5]);
+        assert_eq!(both.votes(), [Some(0), Some(2)]);
+    }
+
+    #[test]
+    fn scaling_lets_a_policy_of_small_values_be_heard() {
+        // The same opinions, a hundred times as loud in the first policy.
+        let policies = [policy(&[&[100.0, 0.0, -100.0]]), policy(&[&[-1.0, 0.5, 0.5]])];
+        assert_eq!(decide(&mut combined(&policies, "sum", 0.0, false), &[0, 0]).preferred, Some(0));
+        let mut scaled = combined(&policies, "sum", 0.0, true);
+        assert_eq!(decide(&mut scaled, &[0, 0]).preferred, Some(1));
+        // 100 / sqrt(20000 / 3) = 1.2247 and -1 / sqrt(1.5 / 3) = -1.4142.
+        assert!((scaled.sum[0] - (1.224_745 - std::f64::consts::SQRT_2)).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_sum_of_nothing_prefers_nothing() {
+        let policies = [policy(&[&[]]), policy(&[&[]])];
+        assert_eq!(decide(&mut combined(&policies, "sum", 0.0, false), &[0, 0]).preferred, None);
+    }
+
+    #[test]
+    fn the_median_of_an_even_number_lies_between() {
+        assert_eq!(median(&[4.0, 1.0, 3.0, 2.0]), 2.5);
+        assert_eq!(median(&[3.0, 1.0, 2.0]), 2.0);
+    }
+}
