@@ -149,7 +149,7 @@ impl Samples {
                 samples.facts.push(cycle.facts().clone());
                 samples.states.push(step.next_state);
             }
-            if step.failed {
+            if step.recover {
                 cycle.recover()?;
             }
         }

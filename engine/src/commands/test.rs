@@ -46,6 +46,11 @@ pub(crate) fn print_figures(console: &mut Console, test: &TestFigures) -> Result
         "test:      {} steps, {} failures ({:.1} per 1000), {} contacts, {:.2} m/s",
         test.steps, test.failures, test.failures_per_1000, test.contacts, test.mean_speed
     ))?;
+    if test.goals > 0 {
+        let all = test.goals + test.failures;
+        let share = 100.0 * test.goals as f64 / all as f64;
+        console.line(&format!("goals:     {} of {all} attempts ({share:.0} %)", test.goals))?;
+    }
     if let (Some(laps), Some(net_m)) = (test.laps, test.net_route_m) {
         console
             .line(&format!("route:     {laps:.1} laps, {net_m:.0} m net along it; {:.0} m driven", test.distance_m))?;

@@ -22,10 +22,24 @@ pub struct Step {
     pub reward: f64,
     /// The state at the end.
     pub next_state: usize,
-    /// Whether the script asks for recovery: a failure.
-    pub failed: bool,
+    /// Whether the script asks for recovery.
+    pub recover: bool,
     /// Whether the body touched something.
     pub contact: bool,
+}
+
+impl Step {
+    /// Whether it ended badly: the script asks for recovery and rewards nothing.
+    #[must_use]
+    pub fn failed(&self) -> bool {
+        self.recover && self.reward <= 0.0
+    }
+
+    /// Whether it reached what the script wants: recovery after a reward above 0.
+    #[must_use]
+    pub fn reached(&self) -> bool {
+        self.recover && self.reward > 0.0
+    }
 }
 
 /// A robot with what turns its observations into states and rewards. It does not know who chooses the actions.
@@ -110,7 +124,7 @@ impl<R: Robot> Cycle<R> {
             action,
             reward: verdict.reward,
             next_state: self.state(),
-            failed: verdict.recover,
+            recover: verdict.recover,
             contact: self.observation.contact,
         })
     }

@@ -63,12 +63,12 @@ pub fn learn(plan: &Plan, seed: u64, stop: &AtomicBool, report: &(dyn Fn(Progres
             action: step.action,
             reward: step.reward,
             next_state: step.next_state,
-            terminal: step.failed && settings.learner.failure_is_terminal,
+            terminal: step.recover && settings.learner.failure_is_terminal,
         });
         steps += 1;
         hash.step(&step, cycle.robot().world().body().pose);
-        early.follow(cycle.robot().world(), step.failed);
-        if step.failed {
+        early.follow(cycle.robot().world(), step.failed());
+        if step.recover {
             learner.forget();
             cycle.recover()?;
             early.jump(cycle.robot().world());

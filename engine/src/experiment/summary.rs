@@ -63,8 +63,10 @@ pub struct RuleTotal {
 pub struct TestFigures {
     /// Steps of the test.
     pub steps: u64,
-    /// Steps in which a rule asked for recovery.
+    /// Steps in which the script asked for recovery without a reward.
     pub failures: u64,
+    /// Steps in which it asked for recovery after a reward above 0: goals reached.
+    pub goals: u64,
     /// The same for 1,000 steps.
     pub failures_per_1000: f64,
     /// Sum of the rewards for 1,000 steps.
@@ -103,6 +105,7 @@ impl TestFigures {
         Self {
             steps,
             failures: tally.failures,
+            goals: tally.goals,
             failures_per_1000: per_1000(tally.failures as f64),
             reinforcement_per_1000: per_1000(tally.curve().iter().sum()),
             distance_m: truth.distance_m,

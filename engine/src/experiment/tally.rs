@@ -21,8 +21,10 @@ pub struct Tally {
     pub windows: Vec<Window>,
     /// By rule: how often it fired.
     pub fired: Vec<u64>,
-    /// Steps that asked for recovery.
+    /// Steps that asked for recovery without a reward.
     pub failures: u64,
+    /// Steps that asked for recovery after a reward: goals reached.
+    pub goals: u64,
     /// Steps in which the body touched something.
     pub contacts: u64,
     /// By window, then by rule: sum of what the rule added.
@@ -35,7 +37,7 @@ impl Tally {
     pub fn new(rules: usize, steps: u64) -> Self {
         let windows = steps.div_ceil(WINDOW_STEPS).min(1 << 20) as usize;
         let (windows, by_rule) = (Vec::with_capacity(windows), Vec::with_capacity(windows * rules));
-        Self { windows, fired: vec![0; rules], failures: 0, contacts: 0, by_rule }
+        Self { windows, fired: vec![0; rules], failures: 0, goals: 0, contacts: 0, by_rule }
     }
 
     /// Counts one step; true if it ended a window.
@@ -44,7 +46,8 @@ impl Tally {
             self.windows.push(Window { steps: 0, reinforcement: 0.0 });
             self.by_rule.resize(self.windows.len() * self.fired.len(), 0.0);
         }
-        self.failures += u64::from(step.failed);
+        self.failures += u64::from(step.failed());
+        self.goals += u64::from(step.reached());
         self.contacts += u64::from(step.contact);
         let Some(window) = self.windows.last_mut() else { return false };
         window.steps += 1;
@@ -79,8 +82,15 @@ mod tests {
     #[test]
     fn a_window_holds_400_steps_and_sums_by_rule() {
         let mut tally = Tally::new(2, 401);
-        let step =
-            |reward, failed| Step { index: 0, state: 0, action: 0, reward, next_state: 0, failed, contact: failed };
+        let step = |reward, failed| Step {
+            index: 0,
+            state: 0,
+            action: 0,
+            reward,
+            next_state: 0,
+            recover: failed,
+            contact: failed,
+        };
         for index in 0..401 {
             let failed = index % 100 == 0;
             let fired = [failed.then_some(-1.0), None];

@@ -116,11 +116,11 @@ fn drive(
         steps += 1;
         hash.step(&step, cycle.robot().world().body().pose);
         truth.follow(cycle.robot().world());
-        trail.follow(cycle.robot().world(), step.failed);
+        trail.follow(cycle.robot().world(), step.failed());
         if steps <= SNAPSHOT_STEP {
             snapshot = (steps == SNAPSHOT_STEP || steps == settings.run.test_steps).then(|| take(&cycle));
         }
-        if step.failed {
+        if step.recover {
             cycle.recover()?;
             truth.jump(cycle.robot().world());
             trail.jump(cycle.robot().world());
