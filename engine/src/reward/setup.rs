@@ -42,6 +42,7 @@ pub const SETUP: &[SetupCall] = &[
     row("grid", "grid(#{ rows: 3, columns: 3 });", "How a filtered image becomes a state."),
     row("learner", "learner(\"ttd\", #{ step_size: 0.2 });", "The way of learning and its parameters."),
     row("recovery", "recovery(\"nearest\", #{ yaw_deg: 8.6 });", "What `then recover` does."),
+    row("movers", "movers(#{ speed: 1.5 });", "What drives by itself in the world."),
     row(
         "policy",
         "policy(\"avoid\", \"runs/avoid/1\");",

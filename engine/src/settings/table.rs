@@ -187,7 +187,7 @@ impl Setting {
             Shape::Number(min, max) => format!("{min} to {max}{unit}"),
             Shape::Whole(min, max) => format!("a whole number from {min} to {max}{unit}"),
             Shape::Flag => "true or false".to_owned(),
-            Shape::Choice(words) => words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", "),
+            Shape::Choice(words) => words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(" or "),
         }
     }
 

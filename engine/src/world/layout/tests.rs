@@ -41,11 +41,12 @@ fn shipped() -> Vec<Layout> {
 }
 
 #[test]
-fn every_shipped_world_loads_and_can_be_driven_along_its_lap() {
+fn every_shipped_world_loads_and_can_be_driven_along_its_lap_if_it_has_one() {
     let layouts = shipped();
     assert!(layouts.len() >= 6);
     for layout in &layouts {
-        let lap = &layout.routes[layout.lap.unwrap()];
+        // Some are made to wander in or to park in.
+        let Some(lap) = layout.lap.map(|lap| &layout.routes[lap]) else { continue };
         for piece in 0..200 {
             let pose = lap.pose_at(lap.length_m() * f64::from(piece) / 200.0);
             assert_eq!(layout.obstruction(pose), None, "{} at {pose:?}", layout.name);
