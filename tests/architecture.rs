@@ -18,6 +18,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("experiment", &["world", "sensors", "filter", "state", "learner", "reward", "robot"]),
     ("store", &["world", "state", "learner", "reward", "experiment"]),
     ("report", &["world", "sensors", "experiment"]),
+    ("reproduce", &["world", "learner", "reward", "robot", "experiment", "report"]),
 ];
 const SHARED: &[&str] = &["geometry", "random", "settings", "diagnostic"];
 /// Words of the clock and of chance, and who may say them.

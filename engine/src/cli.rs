@@ -20,6 +20,8 @@ pub(crate) enum Command {
     Test(TestArguments),
     /// Measure steps per second, and where the time goes
     Bench(BenchArguments),
+    /// Measure the paper's figures and claims again, and draw them beside one another
+    Reproduce(ReproduceArguments),
     /// Print the reference page of the script language
     Reference(ReferenceArguments),
 }
@@ -30,6 +32,7 @@ impl Command {
             Self::Run(arguments) => arguments.json,
             Self::Test(arguments) => arguments.json,
             Self::Bench(arguments) => arguments.json,
+            Self::Reproduce(arguments) => arguments.json,
             Self::Reference(_) => false,
         }
     }
@@ -108,6 +111,37 @@ pub(crate) struct BenchArguments {
     #[arg(long, default_value = "20000", value_parser = count, allow_hyphen_values = true, value_name = "N")]
     pub(crate) steps: u64,
     /// Print the figures as JSON on standard output, and nothing else there
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ReproduceArguments {
+    /// How many seeds, from --seed on; long jobs take fewer and say so
+    #[arg(long, default_value = "30", value_parser = count, allow_hyphen_values = true, value_name = "N")]
+    pub(crate) seeds: u64,
+    /// The first seed
+    #[arg(long, default_value = "1000", value_parser = seed, allow_hyphen_values = true)]
+    pub(crate) seed: u64,
+    /// How many threads to use; without it, one for each core
+    #[arg(long, value_parser = count, allow_hyphen_values = true, value_name = "N")]
+    pub(crate) threads: Option<u64>,
+    /// Two seeds and few steps, to see that every row computes; the verdicts mean nothing
+    #[arg(long)]
+    pub(crate) quick: bool,
+    /// Only this row, such as wall-learned; may be given again
+    #[arg(long, value_name = "ROW")]
+    pub(crate) only: Vec<String>,
+    /// The folder for reproduce.html and reproduce.json
+    #[arg(long, default_value = "runs/reproduce", value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// The folder of the scripts
+    #[arg(long, default_value = "scripts", value_name = "DIR")]
+    pub(crate) scripts: PathBuf,
+    /// Print the rows as a Markdown table
+    #[arg(long)]
+    pub(crate) markdown: bool,
+    /// Print the rows as JSON on standard output, and nothing else there
     #[arg(long)]
     pub(crate) json: bool,
 }

@@ -34,4 +34,7 @@ pub mod robot;
 pub mod experiment;
 
 pub mod report;
+
+pub mod reproduce;
+
 pub mod store;

@@ -32,6 +32,7 @@ fn run(command: &Command, console: &mut Console) -> Result<u8, ConsoleError> {
         Command::Run(arguments) => commands::run::run(arguments, console),
         Command::Test(arguments) => commands::test::run(arguments, console),
         Command::Bench(arguments) => commands::bench::run(arguments, console),
+        Command::Reproduce(arguments) => commands::reproduce::run(arguments, console),
         Command::Reference(arguments) => commands::reference::run(arguments, console),
     }
 }

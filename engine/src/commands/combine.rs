@@ -41,7 +41,7 @@ pub(super) fn run(
     let stop = on_ctrl_c()?;
     let results = in_parallel(seeds, arguments.threads.unwrap_or(0) as usize, |seed| {
         let started = Instant::now();
-        let tested = test_combined(plan, &members, seed, &stop)?;
+        let tested = test_combined(plan, &members, seed, &stop, &mut |_, _| ())?;
         let summary = Summary::of_combination(plan, &members, &tested, seed, started.elapsed().as_secs_f64());
         Ok(SeedResult { tested, summary })
     })?;

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use engine::diagnostic::{Diagnostic, Kind, Result};
-use engine::experiment::{Learned, Member, Plan, Spread, Summary, TestRun, Trail, WINDOW_STEPS};
+use engine::experiment::{CertaintyGrid, Learned, Member, Plan, Spread, Summary, TestRun, Trail, WINDOW_STEPS};
 use engine::geometry::Point2;
 use engine::report::{
-    CurveData, CurveRow, FrameData, PolicyData, PolicyState, TrajectoryData, curve_csv, frame, learning_curve, policy,
-    trajectories, write_atomic,
+    CurveData, CurveRow, FrameData, PolicyData, PolicyState, TrajectoryData, certainty_grid, curve_csv, frame,
+    learning_curve, policy, trajectories, write_atomic,
 };
 use engine::store::{policy_to_toml, run_to_toml};
 
@@ -74,10 +74,17 @@ impl TestFolder {
         Ok(Self { path: path.to_owned() })
     }
 
-    pub(super) fn write(&self, plan: &Plan, tested: &TestRun) -> Result<()> {
+    /// Writes the figures and the pictures; the map is missing for a laser that looks down.
+    pub(super) fn write(&self, plan: &Plan, tested: &TestRun, map: Option<&CertaintyGrid>) -> Result<()> {
         write_json(&self.path.join("test.json"), &tested.figures)?;
         let title = format!("{} in {}: test of the frozen policy", plan.behaviour.name(), plan.layout.name);
         draw_trails(&self.path, plan, &title, &[("first 800 steps", &tested.trail)])?;
+        if let Some(map) = map {
+            let title = format!("{} in {}: what the laser found", plan.behaviour.name(), plan.layout.name);
+            let (columns, cell_m, origin_m) = (map.columns(), map.cell_m(), map.origin_m());
+            certainty_grid(&title, &map.greys(), columns, cell_m, origin_m, &tested.trail)?
+                .write(&self.path, "certainty-grid")?;
+        }
         draw_frame(&self.path, plan, tested)
     }
 }

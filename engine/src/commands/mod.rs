@@ -4,6 +4,7 @@ pub(crate) mod bench;
 mod combine;
 mod folder;
 pub(crate) mod reference;
+pub(crate) mod reproduce;
 pub(crate) mod run;
 mod stop;
 pub(crate) mod test;

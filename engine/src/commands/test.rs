@@ -2,7 +2,8 @@
 
 use std::sync::atomic::Ordering;
 
-use engine::experiment::{Overrides, TestFigures, test, test_combined};
+use engine::experiment::{CertaintyGrid, Cycle, Overrides, Step, TestFigures, test_and_watch, test_combined};
+use engine::robot::SimulatedRobot;
 use engine::store::{Decider, StoredRun};
 
 use super::combine::print_combination;
@@ -17,15 +18,21 @@ pub(crate) fn run(arguments: &TestArguments, console: &mut Console) -> Result<u8
     let plan = plan.with_changes(&Overrides { world, steps: None, test_steps: arguments.steps, set })?;
     let stop = on_ctrl_c()?;
     let test_seed = arguments.seed.unwrap_or(seed);
+    let mut map = arguments.out.as_ref().and_then(|_| CertaintyGrid::new(&plan.layout, &plan.settings.laser));
+    let mut watch = |cycle: &Cycle<SimulatedRobot>, _: &Step| {
+        if let Some(map) = &mut map {
+            map.follow(cycle);
+        }
+    };
     let (tested, combined) = match &decider {
-        Decider::Learned(policy) => (test(&plan, policy, test_seed, &stop)?, None),
+        Decider::Learned(policy) => (test_and_watch(&plan, policy, test_seed, &stop, &mut watch)?, None),
         Decider::Combined(members) => {
-            let combined = test_combined(&plan, members, test_seed, &stop)?;
+            let combined = test_combined(&plan, members, test_seed, &stop, &mut watch)?;
             (combined.run, Some(combined.figures))
         }
     };
     if let Some(out) = &arguments.out {
-        TestFolder::create(out)?.write(&plan, &tested)?;
+        TestFolder::create(out)?.write(&plan, &tested, map.as_ref())?;
     }
     console.json(&tested.figures)?;
     let how = if combined.is_some() { "combined" } else { "learned" };

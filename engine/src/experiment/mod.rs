@@ -2,6 +2,7 @@
 //!
 //! Nothing here prints, reads a clock or writes a file.
 
+mod certainty;
 mod combination;
 mod cycle;
 mod digest;
@@ -16,6 +17,7 @@ mod testing;
 mod trail;
 mod truth;
 
+pub use certainty::CertaintyGrid;
 pub use combination::Member;
 pub use cycle::{Cycle, Step};
 pub use disagreement::{CombinationFigures, Disagreement, DisagreementFigures, Disagreements, MemberFigures};
@@ -25,6 +27,6 @@ pub use plan::{Overrides, Plan};
 pub use seeds::in_parallel;
 pub use summary::{RuleTotal, Spread, Summary, TestFigures, learned_at};
 pub use tally::{Tally, WINDOW_STEPS, Window};
-pub use testing::{CombinedRun, TestRun, test, test_combined};
+pub use testing::{CombinedRun, Snapshot, TestRun, Watch, test, test_and_watch, test_combined};
 pub use trail::Trail;
 pub use truth::{Spells, Truth};

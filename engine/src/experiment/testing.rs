@@ -6,7 +6,7 @@ use super::digest::StateHash;
 use super::summary::TestFigures;
 use super::trail::{Recorder, Trail};
 use super::truth::Truth;
-use super::{CombinationFigures, Cycle, Disagreements, Eyes, Member, Plan, Tally, WINDOW_STEPS};
+use super::{CombinationFigures, Cycle, Disagreements, Eyes, Member, Plan, Step, Tally, WINDOW_STEPS};
 use crate::diagnostic::Result;
 use crate::learner::{Combined, Policy};
 use crate::random::{Random, Stream};
@@ -67,31 +67,49 @@ pub struct CombinedRun {
 /// # Errors
 /// If a sensor, a filter or the script fails.
 pub fn test(plan: &Plan, policy: &Policy, seed: u64, stop: &AtomicBool) -> Result<TestRun> {
-    let mut softmax = policy.softmax(&plan.settings.learner);
-    let mut random = Random::new(seed, Stream::Test);
-    drive(plan, Vec::new(), seed, stop, |states| policy.choose(states[0], &mut softmax, &mut random))
+    test_and_watch(plan, policy, seed, stop, &mut |_, _| ())
 }
 
-/// Tests several policies as one, as [`test`] does; the plan's script judges.
+/// The same test, with a look at every step before any recovery. Looking changes nothing.
+///
+/// # Errors
+/// As [`test`].
+pub fn test_and_watch(plan: &Plan, policy: &Policy, seed: u64, stop: &AtomicBool, watch: Watch<'_>) -> Result<TestRun> {
+    let mut softmax = policy.softmax(&plan.settings.learner);
+    let mut random = Random::new(seed, Stream::Test);
+    drive(plan, Vec::new(), seed, stop, |states| policy.choose(states[0], &mut softmax, &mut random), watch)
+}
+
+/// Tests several policies as one, as [`test_and_watch`] does; the plan's script judges.
 ///
 /// # Errors
 /// As [`test`], and if a policy's filters or grid do not suit the plan's camera.
-pub fn test_combined(plan: &Plan, members: &[Member], seed: u64, stop: &AtomicBool) -> Result<CombinedRun> {
+pub fn test_combined(
+    plan: &Plan,
+    members: &[Member],
+    seed: u64,
+    stop: &AtomicBool,
+    watch: Watch<'_>,
+) -> Result<CombinedRun> {
     let Settings { combine, learner, run, .. } = &plan.settings;
     let policies: Vec<&Policy> = members.iter().map(|member| &member.policy).collect();
     let mut combined = Combined::new(&policies, combine, learner);
     let mut random = Random::new(seed, Stream::Test);
     let mut disagreements = Disagreements::new(&combined, run.test_steps);
     let eyes = members.iter().map(|member| member.eyes(plan)).collect::<Result<Vec<_>>>()?;
-    let run = drive(plan, eyes, seed, stop, |states| {
+    let choose = |states: &[usize]| {
         // The first state is the script's own.
         let decision = combined.choose(&states[1..], &mut random);
         disagreements.count(&states[1..], combined.votes(), &decision);
         decision.action
-    })?;
+    };
+    let run = drive(plan, eyes, seed, stop, choose, watch)?;
     let figures = CombinationFigures::new(plan, members, &disagreements);
     Ok(CombinedRun { run, figures, disagreements })
 }
+
+/// What looks at every step of a test.
+pub type Watch<'a> = &'a mut dyn FnMut(&Cycle<SimulatedRobot>, &Step);
 
 fn drive(
     plan: &Plan,
@@ -99,6 +117,7 @@ fn drive(
     seed: u64,
     stop: &AtomicBool,
     mut choose: impl FnMut(&[usize]) -> usize,
+    watch: Watch<'_>,
 ) -> Result<TestRun> {
     let settings = &plan.settings;
     let world_seed = seed.wrapping_add(TEST_SEED_OFFSET);
@@ -116,9 +135,10 @@ fn drive(
         steps += 1;
         hash.step(&step, cycle.robot().world().body().pose);
         truth.follow(cycle.robot().world());
+        watch(&cycle, &step);
         trail.follow(cycle.robot().world(), step.failed());
         if steps <= SNAPSHOT_STEP {
-            snapshot = (steps == SNAPSHOT_STEP || steps == settings.run.test_steps).then(|| take(&cycle));
+            snapshot = (steps == SNAPSHOT_STEP || steps == settings.run.test_steps).then(|| Snapshot::of(&cycle));
         }
         if step.recover {
             cycle.recover()?;
@@ -131,18 +151,22 @@ fn drive(
     }
     let lap_m = plan.layout.lap.map(|lap| plan.layout.routes[lap].length_m());
     let figures = TestFigures::new(steps, settings.run.period_s, lap_m, &tally, &truth);
-    let snapshot = snapshot.unwrap_or_else(|| take(&cycle));
+    let snapshot = snapshot.unwrap_or_else(|| Snapshot::of(&cycle));
     Ok(TestRun { figures, trail: trail.finish(), snapshot, tally, state_hash: hash.finish(&[]) })
 }
 
-fn take(cycle: &Cycle<SimulatedRobot>) -> Snapshot {
-    let grid = cycle.grid();
-    let counts = grid.counts().iter().enumerate();
-    Snapshot {
-        image: cycle.observation().image.clone(),
-        mask: cycle.mask().to_vec(),
-        shares: counts.map(|(cell, count)| *count as f32 / grid.area_px(cell) as f32).collect(),
-        occupied: grid.occupied().to_vec(),
-        state: cycle.state(),
+impl Snapshot {
+    /// The present frame.
+    #[must_use]
+    pub fn of(cycle: &Cycle<SimulatedRobot>) -> Self {
+        let grid = cycle.grid();
+        let counts = grid.counts().iter().enumerate();
+        Self {
+            image: cycle.observation().image.clone(),
+            mask: cycle.mask().to_vec(),
+            shares: counts.map(|(cell, count)| *count as f32 / grid.area_px(cell) as f32).collect(),
+            occupied: grid.occupied().to_vec(),
+            state: cycle.state(),
+        }
     }
 }
