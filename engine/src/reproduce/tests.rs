@@ -47,6 +47,17 @@ fn limits_include_themselves() {
 }
 
 #[test]
+fn one_learner_beats_another_by_fewer_steps_or_more_seeds_and_loses_neither() {
+    let reference = spread(&[800.0, 1200.0, 1600.0, f64::INFINITY]);
+    let judge = |values: &[f64]| Rule::Beats.judge(&spread(values), Some(&reference));
+    assert_eq!(judge(&[800.0, 1200.0, 1200.0, f64::INFINITY]), Verdict::Better);
+    assert_eq!(judge(&[800.0, 1200.0, 1600.0, 4000.0]), Verdict::Better);
+    assert_eq!(judge(&[800.0, 1200.0, 1600.0, f64::INFINITY]), Verdict::Worse);
+    assert_eq!(judge(&[800.0, 1200.0, 2000.0, 4000.0]), Verdict::NotComparable);
+    assert_eq!(Rule::Beats.judge(&reference, None), Verdict::NotComparable);
+}
+
+#[test]
 fn a_share_counts_good_seeds() {
     let found = spread(&[400.0, f64::INFINITY, 800.0, 400.0]);
     assert_eq!(Rule::Loses(0.2).judge(&found, None), Verdict::Reproduced);

@@ -53,6 +53,9 @@ pub enum Rule {
     Degrades(f64),
     /// The median is the reference's or more, and this share of the seeds learned: reproduced; below it: better.
     Slower(f64),
+    /// Fewer steps than the reference or more seeds that learned, and neither the other way round: better; neither:
+    /// worse; one of each: not comparable.
+    Beats,
     /// The numbers do not answer the claim.
     None,
 }
@@ -102,6 +105,16 @@ impl Spread {
     pub fn share(&self) -> f64 {
         self.good as f64 / self.values.len() as f64
     }
+
+    fn beats(&self, reference: &Self) -> Verdict {
+        let (fewer, more) = (self.median() < reference.median(), self.share() > reference.share());
+        let (later, less) = (self.median() > reference.median(), self.share() < reference.share());
+        match (fewer || more, later || less) {
+            (true, false) => Verdict::Better,
+            (true, true) => Verdict::NotComparable,
+            (false, _) => Verdict::Worse,
+        }
+    }
 }
 
 impl Rule {
@@ -126,6 +139,7 @@ impl Rule {
             }),
             Self::Slower(_) if reference.is_some_and(|reference| median < reference.median()) => Verdict::Better,
             Self::Slower(share) => compared(&|_| or_worse(ours.share() >= share)),
+            Self::Beats => reference.map_or(Verdict::NotComparable, |reference| ours.beats(reference)),
             Self::None => Verdict::NotComparable,
         }
     }
@@ -154,6 +168,10 @@ impl Rule {
                 "reproduced if the median is no earlier than the reference's and {:.0} % of the seeds learn; better if earlier",
                 100.0 * share
             ),
+            Self::Beats => {
+                "better if fewer steps or more seeds that learn, and neither the other way round; worse if neither"
+                    .to_owned()
+            }
             Self::None => "no number here answers it".to_owned(),
         }
     }
