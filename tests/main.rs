@@ -15,6 +15,8 @@ mod bad_input;
 mod combine;
 /// Same seed, same bytes: twice, with one thread or two, stored and tested again.
 mod determinism;
+/// The paper's claims through the program, quickly; the map that a test leaves.
+mod reproduce;
 /// What a run leaves, and that it is well-formed.
 mod run_folder;
 /// Every script and world that ships can be used, and the reference pages are current.

@@ -121,7 +121,7 @@ pub(crate) struct ReproduceArguments {
     #[arg(long, default_value = "30", value_parser = count, allow_hyphen_values = true, value_name = "N")]
     pub(crate) seeds: u64,
     /// The first seed
-    #[arg(long, default_value = "1000", value_parser = seed, allow_hyphen_values = true)]
+    #[arg(long, default_value = "2000", value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
     /// How many threads to use; without it, one for each core
     #[arg(long, value_parser = count, allow_hyphen_values = true, value_name = "N")]

@@ -1,6 +1,6 @@
 //! `engine reproduce`: the paper's figures and claims beside what is measured here.
 
-use std::path::PathBuf;
+use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
@@ -60,7 +60,7 @@ fn tell(
     arguments: &ReproduceArguments,
     console: &mut Console,
     found: &Reproduction,
-    path: &PathBuf,
+    path: &Path,
     steps: u64,
 ) -> Result<(), ConsoleError> {
     console.json(found)?;

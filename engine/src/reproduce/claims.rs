@@ -88,8 +88,17 @@ const fn robust(id: &'static str, said: &'static str, world: &'static str, rule:
     claim(id, said, WALL, Metric::Failures, rule).test(trial(Some(world), &[])).against(WALL, None)
 }
 
+const fn light(id: &'static str, said: &'static str, world: &'static str) -> Claim {
+    robust(id, said, world, Rule::Degrades(1.0))
+        .paper("4.1.1", "sensitive")
+        .note("The paper warns of it without a number; how much light or texture changes here is our choice.")
+}
+
 const fn follows(id: &'static str, said: &'static str, set: &'static [&'static str], rule: Rule) -> Claim {
-    claim(id, said, OBJECT, Metric::NeverLost, rule).test(trial(None, set)).paper("4.5.2", "follows below 0.35 m/s")
+    claim(id, said, OBJECT, Metric::NeverLost, rule)
+        .test(trial(None, set))
+        .paper("4.5.2", "follows below 0.35 m/s")
+        .note("A failure is to lose it from view or to come nearer than 30 cm, once in 11 minutes.")
 }
 
 const fn beyond(id: &'static str, said: &'static str, learn: Learn, paper: Learn) -> Claim {
@@ -124,11 +133,14 @@ pub const CLAIMS: &[Claim] = &[
         "Delayed reinforcement is more robust than instant",
         INSTANT,
         Metric::LearnedAt,
-        Rule::Slower(0.0),
+        Rule::None,
     )
     .paper("4.2.1", "delayed is better")
     .against(WALL, None)
-    .note("Ours is the instant one, the reference the delayed one."),
+    .note(
+        "Ours is the instant one, the reference the delayed one. Each is measured by its own reinforcement, and the \
+         instant one punishes more often: the steps do not say which behaviour is more robust.",
+    ),
     claim(
         "q-3x3",
         "One-step Q-learning needs more steps, with the same grid",
@@ -167,11 +179,11 @@ pub const CLAIMS: &[Claim] = &[
         "The final behaviour tends to turn to one side",
         CORRIDOR,
         Metric::CommonerSide,
-        Rule::AtLeast(0.6),
+        Rule::AtLeast(0.8),
     )
     .test(CROSSINGS)
     .paper("4.3.2", "a tendency")
-    .note("The share of the commoner side among the turns at crossings; 0.5 is no tendency."),
+    .note("The share of the commoner side among the turns at crossings. A seed makes few turns, and chance alone often gives 0.7."),
     claim(
         "corridor-crossings",
         "At crossings it makes no decision",
@@ -191,7 +203,7 @@ pub const CLAIMS: &[Claim] = &[
     )
     .paper("4.3.1", "no significant change")
     .against(CORRIDOR, None)
-    .note("A reward in every step outweighs differences of 0.1 between actions at the paper's temperature of 0.009."),
+    .note("A reward in every step outweighs differences of 0.1 between actions at the paper's temperature of 0.009. At most 15 seeds."),
     claim(
         "corridor-erroneous",
         "Even an erroneous reinforcement learns",
@@ -201,7 +213,7 @@ pub const CLAIMS: &[Claim] = &[
     )
     .paper("4.3.1", "learned all the same")
     .against(CORRIDOR, None)
-    .note("Slow and turning is rewarded, straight and fast is punished."),
+    .note("Slow and turning is rewarded, straight and fast is punished. At most 15 seeds."),
     claim(
         "platform-learned",
         "The platform is learned within 2,000 steps",
@@ -264,14 +276,10 @@ pub const CLAIMS: &[Claim] = &[
     robust("gaps-40", "Gaps of 40 cm in the wall do no harm", "room-gaps-40", Rule::NoWorse(1.0)).paper("5", "optimal"),
     robust("gaps-60", "Gaps of 60 cm make it worse", "room-gaps-60", Rule::Degrades(1.0)).paper("5", "deteriorates"),
     robust("gaps-100", "Gaps of 100 cm make it worse", "room-gaps-100", Rule::Degrades(1.0)).paper("5", "deteriorates"),
-    robust("light-bright", "Edges are sensitive to light: brighter", "room-bright", Rule::Degrades(1.0))
-        .paper("4.1.1", "sensitive"),
-    robust("light-dark", "Edges are sensitive to light: darker", "room-dark", Rule::Degrades(1.0))
-        .paper("4.1.1", "sensitive"),
-    robust("light-side", "Edges are sensitive to light: from the side", "room-side-light", Rule::Degrades(1.0))
-        .paper("4.1.1", "sensitive"),
-    robust("texture", "Edges are sensitive to texture on the floor", "room-textured", Rule::Degrades(1.0))
-        .paper("4.1.1", "sensitive"),
+    light("light-bright", "Edges are sensitive to light: brighter", "room-bright"),
+    light("light-dark", "Edges are sensitive to light: darker", "room-dark"),
+    light("light-side", "Edges are sensitive to light: from the side", "room-side-light"),
+    light("texture", "Edges are sensitive to texture on the floor", "room-textured"),
     claim("noise", "Pixel noise of 5 grey levels", WALL, Metric::Failures, Rule::None)
         .test(trial(None, &["camera.noise=5"]))
         .against(WALL, None)

@@ -43,7 +43,7 @@ pub fn figures(measured: &Measured) -> Result<Vec<Figure>> {
         (PLATFORM, "platform-learned", "platform following", 7),
         (OBJECT, "object-learned", "object following", 9),
     ];
-    if let Some((plan, outcome)) = typical(measured, WALL) {
+    if let Some((plan, outcome)) = richest(measured, WALL) {
         let picture = draw_frame(plan, &outcome.tested.snapshot, "From image to state")?;
         let caption = "The camera's image, its edges, and the grid of 3 x 3 cells that becomes the state. A cell above an \
                        occupied one counts as occupied.";
@@ -78,6 +78,13 @@ fn typical(measured: &Measured, learn: Learn) -> Option<(&Plan, &Outcome)> {
     let mut outcomes: Vec<&Outcome> = job.outcomes.iter().collect();
     outcomes.sort_by_key(|outcome| (outcome.tested.figures.failures, outcome.summary.seed));
     Some((plan, *outcomes.get(outcomes.len() / 2)?))
+}
+
+/// The seed whose one kept frame has the most occupied cells, since an empty frame shows nothing.
+fn richest(measured: &Measured, learn: Learn) -> Option<(&Plan, &Outcome)> {
+    let job = measured.job(learn)?;
+    let occupied = |outcome: &&Outcome| outcome.tested.snapshot.occupied.iter().filter(|cell| **cell).count();
+    Some((job.plan.as_ref().ok()?, job.outcomes.iter().rev().max_by_key(occupied)?))
 }
 
 fn curve(job: &JobResult, beside: &'static str, name: &str, number: u32) -> Result<Figure> {

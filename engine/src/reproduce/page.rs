@@ -151,10 +151,10 @@ fn write_figures<'a>(out: &mut String, figures: impl Iterator<Item = &'a Figure>
     out.push_str("<div class=\"figures\">\n");
     for figure in figures {
         let kind = if figure.is_photograph { "photograph" } else { "drawing" };
-        let _ = write!(
+        let _ = writeln!(
             out,
             "<figure id=\"{}\" class=\"{kind}\"><div class=\"picture\"><img alt=\"{}\" src=\"data:image/svg+xml,{}\">\
-             </div><figcaption><b>{}</b>{}</figcaption></figure>\n",
+             </div><figcaption><b>{}</b>{}</figcaption></figure>",
             Escaped(&figure.id),
             Escaped(&figure.caption),
             Encoded(&figure.svg),

@@ -32,8 +32,8 @@ pub(super) fn strip(claim: &Claim, ours: &Numbers) -> String {
     let place = |value: f64| FROM_PX + (TO_PX - FROM_PX) * (value - low) / span;
     let mut out = open("Each dot is a seed; the upright line is the paper's number or the limit.");
     let _ = write!(out, "<path class=\"axis\" d=\"M{FROM_PX} {MIDDLE_PX}H{TO_PX}\"/>");
-    if let (Some(first), Some(last)) = (ours.quartile_low, ours.quartile_high) {
-        let (from, to) = (place(first), place(last));
+    if let Some(first) = ours.quartile_low {
+        let (from, to) = (place(first), ours.quartile_high.map_or(TO_PX, place));
         let _ = write!(
             out,
             "<rect class=\"band\" x=\"{:.1}\" y=\"9\" width=\"{:.1}\" height=\"12\" rx=\"3\"/>",
