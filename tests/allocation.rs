@@ -43,16 +43,17 @@ fn allocations(plan: &Plan, steps: u64) -> u64 {
     let mut plan = plan.clone();
     plan.settings.run.steps = steps;
     let before = ALLOCATIONS.get();
-    learn(&plan, 7, &AtomicBool::new(false), &|_| ()).unwrap();
-    ALLOCATIONS.get() - before
+    let learned = learn(&plan, 7, &AtomicBool::new(false), &|_| ()).unwrap();
+    // The policy at the end has a row for each state that was seen; the loop itself has none.
+    ALLOCATIONS.get() - before - learned.policy.rows().iter().flatten().count() as u64
 }
 
 #[test]
 fn more_steps_allocate_nothing_more() {
-    for script in ["wall", "platform"] {
+    for script in ["wall", "corridor", "platform", "object"] {
         let behaviour = Behaviour::load(&root().join(format!("scripts/{script}.rhai"))).unwrap();
         let plan = Plan::new(Arc::new(behaviour), &Overrides::default()).unwrap();
         // Scratch memory grows until the hardest view was seen; the steps after that are free.
-        assert_eq!(allocations(&plan, 4_000), allocations(&plan, 3_000), "{script}");
+        assert_eq!(allocations(&plan, 5_000), allocations(&plan, 3_000), "{script}");
     }
 }

@@ -14,6 +14,8 @@ use crate::settings::CameraSettings;
 use crate::world::scene::{Scene, Solid};
 use std::sync::Arc;
 
+/// Faces of movers for which there is room from the start.
+const MOVING_FACES: usize = 256;
 /// What is seen where there is nothing.
 const SKY: [u8; 3] = [186, 198, 210];
 /// Numbers of the three things that are always there, among drawn faces and looks alike.
@@ -67,7 +69,9 @@ impl Camera {
         looks.push_plain(SKY);
         looks.push(&parts.materials[parts.floor], &parts.light, &Vector3::z());
         looks.push_plain([0; 3]);
+        let mut faces = 0;
         for face in surfaces.faces() {
+            faces += 1;
             looks.push(&parts.materials[face.material], &parts.light, &face.normal);
         }
         Self {
@@ -84,9 +88,9 @@ impl Camera {
             standing_looks: looks.length(),
             looks,
             spans: Spans::new(pinhole.width_px, pinhole.height_px),
-            seen: Vec::new(),
-            drawn: Vec::new(),
-            nearness: Vec::new(),
+            seen: Vec::with_capacity(parts.solids.len()),
+            drawn: Vec::with_capacity(faces + MOVING_FACES),
+            nearness: Vec::with_capacity(faces + MOVING_FACES),
         }
     }
 

@@ -72,7 +72,7 @@ impl Laser {
             ],
             surfaces: Surfaces::new(&scene.parts().solids),
             moving: Surfaces::default(),
-            seen: Vec::new(),
+            seen: Vec::with_capacity(scene.parts().solids.len()),
             beams: Beams {
                 ahead: (0..count).map(|beam| libm::cos(angle(beam))).collect(),
                 left: (0..count).map(|beam| libm::sin(angle(beam))).collect(),
