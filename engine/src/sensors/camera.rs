@@ -74,6 +74,7 @@ impl Camera {
             faces += 1;
             looks.push(&parts.materials[face.material], &parts.light, &face.normal);
         }
+        looks.reserve(MOVING_FACES);
         Self {
             scene: Arc::clone(scene),
             width_px,
@@ -84,7 +85,7 @@ impl Camera {
             frame: 0,
             mount,
             surfaces,
-            moving: Surfaces::default(),
+            moving: Surfaces::with_room(),
             standing_looks: looks.length(),
             looks,
             spans: Spans::new(pinhole.width_px, pinhole.height_px),

@@ -71,7 +71,7 @@ impl Laser {
                 Vector3::new(sin, 0.0, cos),
             ],
             surfaces: Surfaces::new(&scene.parts().solids),
-            moving: Surfaces::default(),
+            moving: Surfaces::with_room(),
             seen: Vec::with_capacity(scene.parts().solids.len()),
             beams: Beams {
                 ahead: (0..count).map(|beam| libm::cos(angle(beam))).collect(),

@@ -35,7 +35,7 @@ impl Spans {
     pub(super) fn new(width_px: usize, height_px: usize) -> Self {
         Self {
             width_px,
-            rows: vec![Vec::with_capacity(64); height_px],
+            rows: (0..height_px).map(|_| Vec::with_capacity(64)).collect(),
             bounds: [vec![0; height_px], vec![0; height_px]],
             rebuilt: Vec::with_capacity(64),
         }

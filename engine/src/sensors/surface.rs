@@ -66,6 +66,11 @@ impl Surfaces {
         surfaces
     }
 
+    /// None yet, with room for a few solids, so that moving ones rarely ask for memory while the robot drives.
+    pub(super) fn with_room() -> Self {
+        Self { vertices: Vec::with_capacity(1024), faces: Vec::with_capacity(256), solids: Vec::with_capacity(64) }
+    }
+
     /// Forgets everything but the memory.
     pub(super) fn clear(&mut self) {
         self.vertices.clear();

@@ -55,6 +55,12 @@ impl Looks {
         (self.looks.len(), self.palette.len())
     }
 
+    /// Makes room for so many looks more.
+    pub(super) fn reserve(&mut self, looks: usize) {
+        self.looks.reserve(looks);
+        self.palette.reserve(looks);
+    }
+
     /// Forgets all but the first looks and colours.
     pub(super) fn truncate(&mut self, (looks, colours): (usize, usize)) {
         self.looks.truncate(looks);
