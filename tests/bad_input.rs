@@ -205,6 +205,36 @@ fn a_start_inside_a_wall() {
     assert_snapshot!(world("position_m = [3.0, 0.7]", "position_m = [3.0, 0.1]"));
 }
 
+// Worlds that a behaviour cannot be learned in
+
+#[test]
+fn a_recovery_to_a_route_in_a_world_without_one() {
+    assert_snapshot!(world("name = \"lap\"", "name = \"other\""));
+}
+
+#[test]
+fn a_colour_filter_that_never_sees_its_colour() {
+    assert_snapshot!(rule(
+        "filter(\"colour\", #{ hue_deg: 240 });\nrule \"lost\" when !camera.seen => -1 then recover;"
+    ));
+}
+
+#[test]
+fn a_laser_tilt_at_which_a_rule_can_never_fire() {
+    assert_snapshot!(rule("laser(#{ tilt_deg: 45 });\nrule \"far\" when laser.front > 1.0 => -1;"));
+}
+
+#[test]
+fn recovery_poses_that_are_all_blocked() {
+    let bench = Bench::new();
+    // A mover stands on the only start, and there is no lap to go to.
+    let parked = "\n[[mover]]\nname = \"van\"\nroute = \"track\"\nspeed_m_per_s = 0.1\noffset_m = 2.3\n\
+                  boxes = [{ centre_m = [0, 0, 0.3], size_m = [1, 1, 0.5], material = \"wall\" }]\n";
+    bench.write("worlds/small.toml", WORLD.replacen("name = \"lap\"", "name = \"track\"", 1) + parked);
+    bench.write("short.rhai", format!("recovery(\"start\");\n{SCRIPT}"));
+    assert_snapshot!(bench.failure(&["run", "short.rhai"]));
+}
+
 // The command line
 
 #[test]

@@ -9,6 +9,7 @@ mod digest;
 mod disagreement;
 mod eyes;
 mod learning;
+mod outlook;
 mod plan;
 mod seeds;
 mod summary;

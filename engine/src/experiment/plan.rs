@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::combination;
+use super::{combination, outlook};
 use crate::diagnostic::{Diagnostic, Kind, Result, nearest_name, printable};
 use crate::filter::Chain;
 use crate::geometry::Twist;
@@ -73,8 +73,10 @@ impl Plan {
         plan.chain()?;
         plan.grid()?;
         plan.judge()?;
+        plan.behaviour.check_reach(&plan.settings.laser, plan.layout.level_height_m())?;
         plan.mirror()?;
         SimulatedRobot::new(&plan.layout, &plan.settings, 0)?;
+        outlook::check(&plan)?;
         Ok(plan)
     }
 

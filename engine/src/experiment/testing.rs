@@ -73,7 +73,7 @@ pub fn test(plan: &Plan, policy: &Policy, seed: u64, stop: &AtomicBool) -> Resul
 /// The same test, with a look at every step before any recovery. Looking changes nothing.
 ///
 /// # Errors
-/// As [`test`].
+/// As [`test()`].
 pub fn test_and_watch(plan: &Plan, policy: &Policy, seed: u64, stop: &AtomicBool, watch: Watch<'_>) -> Result<TestRun> {
     let mut softmax = policy.softmax(&plan.settings.learner);
     let mut random = Random::new(seed, Stream::Test);
@@ -83,7 +83,7 @@ pub fn test_and_watch(plan: &Plan, policy: &Policy, seed: u64, stop: &AtomicBool
 /// Tests several policies as one, as [`test_and_watch`] does; the plan's script judges.
 ///
 /// # Errors
-/// As [`test`], and if a policy's filters or grid do not suit the plan's camera.
+/// As [`test()`], and if a policy's filters or grid do not suit the plan's camera.
 pub fn test_combined(
     plan: &Plan,
     members: &[Member],

@@ -9,7 +9,7 @@ use super::setup::{self, Log, Places};
 use super::source::{self, Code};
 use super::{names, reach, rehearsal, running, sandbox, syntax};
 use crate::diagnostic::{Diagnostic, Kind, Result, SourceText, printable};
-use crate::settings::Settings;
+use crate::settings::{LaserSettings, Settings};
 use rhai::{AST, Dynamic, Engine, Module, Position, Scope, Stmt};
 use std::ops::Range;
 use std::path::Path;
@@ -88,10 +88,18 @@ impl Behaviour {
         let Settings { run, laser, grid, .. } = &self.settings;
         self.loaded.check_beams(laser.beams as usize)?;
         self.loaded.check_cells((grid.rows as usize, grid.columns as usize))?;
-        for rule in &self.loaded.rules {
-            reach::check(&self.loaded.code.source, rule, laser)?;
-        }
+        self.check_reach(laser, f64::INFINITY)?;
         rehearsal::rehearse(self.judge(run.period_s, laser.beams as usize)?, &self.settings)
+    }
+
+    /// Checks that every rule can fire with this laser, on a floor at most `drop_m` metres below the robot's own ground;
+    /// infinite where that is not known.
+    ///
+    /// # Errors
+    /// `E-SCRIPT-RULE` at the condition of the first rule that never can.
+    pub fn check_reach(&self, laser: &LaserSettings, drop_m: f64) -> Result<()> {
+        let limits = reach::Limits::new(laser, drop_m);
+        self.loaded.rules.iter().try_for_each(|rule| reach::check(&self.loaded.code.source, rule, &limits))
     }
 
     /// The name: the file's, without its ending.

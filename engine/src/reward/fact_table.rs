@@ -1,7 +1,6 @@
 //! The one list of facts: scripts, checks, near names, the reference page and editors read it.
 
 use super::facts::{Facts, decimal, greatest, least, mean};
-use crate::settings::LaserSettings;
 
 /// How a fact is read.
 #[derive(Debug, Clone, Copy)]
@@ -217,10 +216,10 @@ impl Fact {
 }
 
 impl Reach {
-    /// The least and the greatest value with this laser.
-    pub(super) fn bounds(self, laser: &LaserSettings) -> (f64, f64) {
+    /// The least and the greatest value; for the laser's facts [`super::reach::Limits`] knows better.
+    pub(super) fn bounds(self) -> (f64, f64) {
         match self {
-            Self::Laser => (laser.min_range_m, laser.max_range_m),
+            Self::Laser => (0.0, f64::INFINITY),
             Self::Between(low, high) => (low, high),
             Self::From(low) => (low, f64::INFINITY),
             Self::Any => (f64::NEG_INFINITY, f64::INFINITY),

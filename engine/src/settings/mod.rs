@@ -1,6 +1,6 @@
 //! What a behaviour sets up: plain numbers and names, as written, each with one default.
 //!
-//! Nothing here opens a file or knows a script. [`table`] is the one list of settings: the set-up calls of scripts,
+//! Nothing here opens a file or knows a script. [`SETTINGS`] is the one list of settings: the set-up calls of scripts,
 //! `--set`, `run.toml`, range checks and the reference page all read it.
 
 mod table;

@@ -18,6 +18,8 @@ pub(super) struct Terrain {
     carries: Vec<bool>,
     /// Nothing but the floor can be stood on.
     pub(super) flat: bool,
+    /// How far the robot can stand above the floor while it stands level, metres; infinite where it can tip.
+    pub(super) level_height_m: f64,
 }
 
 /// How a stance is supported.
@@ -42,7 +44,14 @@ impl Terrain {
             solid.collides && (climbed || carries.get(index).is_some_and(|carries| *carries))
         };
         let flat = !(0..solids.len()).any(can_be_stood_on);
-        Self { obstacles, carries, flat }
+        let height_m = |index: usize| {
+            let top_m = obstacles[index].top_m();
+            let tips = top_m <= STEP_M || matches!(solids[index].shape, Shape::Ramp { .. });
+            if tips { f64::INFINITY } else { top_m }
+        };
+        let level_height_m =
+            (0..solids.len()).filter(|index| can_be_stood_on(*index)).map(height_m).fold(0.0, f64::max);
+        Self { obstacles, carries, flat, level_height_m }
     }
 
     pub(super) fn obstacle(&self, index: u32) -> &Obstacle {

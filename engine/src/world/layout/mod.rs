@@ -49,6 +49,13 @@ pub(super) enum Obstruction {
 }
 
 impl Layout {
+    /// How far above the floor the robot can stand while it stands level, metres: 0 without platforms, infinite where
+    /// ramps or kerbs can tip it.
+    #[must_use]
+    pub fn level_height_m(&self) -> f64 {
+        self.terrain.level_height_m
+    }
+
     /// Reads a world from its text.
     ///
     /// # Errors
