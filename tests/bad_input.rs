@@ -225,7 +225,7 @@ fn a_laser_tilt_at_which_a_rule_can_never_fire() {
 }
 
 #[test]
-fn recovery_poses_that_are_all_blocked() {
+fn a_start_that_a_mover_blocks() {
     let bench = Bench::new();
     // A mover stands on the only start, and there is no lap to go to.
     let parked = "\n[[mover]]\nname = \"van\"\nroute = \"track\"\nspeed_m_per_s = 0.1\noffset_m = 2.3\n\
