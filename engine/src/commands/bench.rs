@@ -36,8 +36,15 @@ struct Report {
     steps_per_second_one_core: f64,
     steps_per_second_all_cores: f64,
     step_us: f64,
-    stages_us: Vec<(&'static str, f64)>,
+    stages: Vec<Stage>,
     copy_of_one_frame_us: f64,
+}
+
+/// Microseconds of one stage in each step.
+#[derive(serde::Serialize)]
+struct Stage {
+    name: &'static str,
+    us: f64,
 }
 
 pub(crate) fn run(arguments: &BenchArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
@@ -65,8 +72,8 @@ fn print(console: &mut Console, report: &Report) -> std::result::Result<(), Cons
     ))?;
     console.line(&format!("{} cores:   {:>8.0} steps per second", report.cores, report.steps_per_second_all_cores))?;
     console.line("microseconds for each step, stage by stage:")?;
-    for (stage, us) in &report.stages_us {
-        console.line(&format!("  {stage:10} {us:8.2}"))?;
+    for Stage { name, us } in &report.stages {
+        console.line(&format!("  {name:10} {us:8.2}"))?;
     }
     console.line(&format!("for scale, a copy of one RGB frame: {:.2} us", report.copy_of_one_frame_us))
 }
@@ -91,7 +98,7 @@ fn measure(plan: &Plan, steps: u64) -> Result<Report> {
         steps_per_second_one_core: steps as f64 / one,
         steps_per_second_all_cores: (steps * cores as u64) as f64 / all,
         step_us: one / steps as f64 * 1e6,
-        stages_us: stages(plan, &samples, steps)?,
+        stages: stages(plan, &samples, steps)?,
         copy_of_one_frame_us: median_us(steps as usize, |_| black_box(&mut copy).copy_from_slice(black_box(frame))),
     })
 }
@@ -157,7 +164,7 @@ impl Samples {
     }
 }
 
-fn stages(plan: &Plan, samples: &Samples, steps: u64) -> Result<Vec<(&'static str, f64)>> {
+fn stages(plan: &Plan, samples: &Samples, steps: u64) -> Result<Vec<Stage>> {
     let (settings, layout, calls) = (&plan.settings, &plan.layout, steps as usize);
     let mut world = World::new(Arc::clone(layout), &settings.robot, settings.run.period_s, 1);
     let mut camera = Camera::new(&layout.scene, &settings.camera, 1);
@@ -204,12 +211,12 @@ fn stages(plan: &Plan, samples: &Samples, steps: u64) -> Result<Vec<(&'static st
         return Err(error);
     }
     Ok(vec![
-        ("physics", physics),
-        ("camera", camera),
-        ("laser", laser),
-        ("filter", filter),
-        ("state", state),
-        ("script", script),
-        ("learner", learner),
+        Stage { name: "physics", us: physics },
+        Stage { name: "camera", us: camera },
+        Stage { name: "laser", us: laser },
+        Stage { name: "filter", us: filter },
+        Stage { name: "state", us: state },
+        Stage { name: "script", us: script },
+        Stage { name: "learner", us: learner },
     ])
 }

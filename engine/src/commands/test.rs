@@ -50,8 +50,12 @@ pub(crate) fn run(arguments: &TestArguments, console: &mut Console) -> Result<u8
 /// The figures of a test for a person, and in words what a reward cannot see.
 pub(crate) fn print_figures(console: &mut Console, test: &TestFigures) -> Result<(), ConsoleError> {
     console.line(&format!(
-        "test:      {} steps, {} failures ({:.1} per 1000), {} contacts, {:.2} m/s",
-        test.steps, test.failures, test.failures_per_1000, test.contacts, test.mean_speed
+        "test:      {} steps, {} ({:.1} per 1000), {}, {:.2} m/s",
+        test.steps,
+        counted(test.failures, "failure"),
+        test.failures_per_1000,
+        counted(test.contacts, "contact"),
+        test.mean_speed
     ))?;
     if test.goals > 0 {
         let all = test.goals + test.failures;
@@ -74,4 +78,9 @@ pub(crate) fn print_figures(console: &mut Console, test: &TestFigures) -> Result
         console.line("warning:   it avoids punishment, but makes less than 0.1 m/s along the route")?;
     }
     Ok(())
+}
+
+/// `1 failure`, `2 failures`.
+fn counted(count: u64, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }
