@@ -22,6 +22,10 @@ pub(crate) enum Command {
     Bench(BenchArguments),
     /// Measure the paper's figures and claims again, and draw them beside one another
     Reproduce(ReproduceArguments),
+    /// See photographs as a behaviour's filters see them, and whether training met their states
+    Filter(FilterArguments),
+    /// List the filters that scripts can use, or print the manual of one
+    Plugins(PluginsArguments),
     /// Print the reference page of the script language
     Reference(ReferenceArguments),
 }
@@ -33,6 +37,8 @@ impl Command {
             Self::Test(arguments) => arguments.json,
             Self::Bench(arguments) => arguments.json,
             Self::Reproduce(arguments) => arguments.json,
+            Self::Filter(arguments) => arguments.json,
+            Self::Plugins(arguments) => arguments.json,
             Self::Reference(_) => false,
         }
     }
@@ -147,6 +153,52 @@ pub(crate) struct ReproduceArguments {
 }
 
 #[derive(Debug, Args)]
+#[command(
+    after_help = "Exit status: 0 done; 1 too many new states; 2 usage; 3 bad script or image; 6 files and disk; \
+                        7 a stored run that does not fit."
+)]
+pub(crate) struct FilterArguments {
+    /// The behaviour's script, such as scripts/wall.rhai
+    pub(crate) behaviour: PathBuf,
+    /// PNG or JPEG files, or folders of them; at most 64 MiB and 50 megapixels each
+    #[arg(required = true)]
+    pub(crate) image: Vec<PathBuf>,
+    /// The folder of a run: says which states its training met
+    #[arg(long, value_name = "RUN")]
+    pub(crate) run: Option<PathBuf>,
+    /// The share of images with new states above which the exit status is 1
+    #[arg(long, default_value = "0.2", value_parser = share, allow_hyphen_values = true, value_name = "SHARE")]
+    pub(crate) new_share: f64,
+    /// Change a setting of the script, such as filter.sobel.threshold=80; may be given again
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// The folder for the pictures [default: runs/BEHAVIOUR/filter]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print one object for each image as JSON on standard output, and nothing else there
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PluginsArguments {
+    #[command(subcommand)]
+    pub(crate) command: Option<PluginsCommand>,
+    /// Print as JSON on standard output, and nothing else there
+    #[arg(long, global = true)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum PluginsCommand {
+    /// Print the manual of one filter
+    Show {
+        /// The filter's name, such as sobel
+        name: String,
+    },
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct ReferenceArguments {
     /// Print definitions for editors (.d.rhai) instead of the page
     #[arg(long)]
@@ -161,6 +213,13 @@ fn count(text: &str) -> Result<u64, String> {
     match text.parse() {
         Ok(count) if (1..=1_000_000_000).contains(&count) => Ok(count),
         _ => Err("write a whole number from 1 to 1000000000".to_owned()),
+    }
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
+        _ => Err("write a number from 0 to 1, such as 0.2".to_owned()),
     }
 }
 

@@ -33,6 +33,8 @@ fn run(command: &Command, console: &mut Console) -> Result<u8, ConsoleError> {
         Command::Test(arguments) => commands::test::run(arguments, console),
         Command::Bench(arguments) => commands::bench::run(arguments, console),
         Command::Reproduce(arguments) => commands::reproduce::run(arguments, console),
+        Command::Filter(arguments) => commands::filter::run(arguments, console),
+        Command::Plugins(arguments) => commands::plugins::run(arguments, console),
         Command::Reference(arguments) => commands::reference::run(arguments, console),
     }
 }

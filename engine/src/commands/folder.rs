@@ -6,8 +6,8 @@ use engine::diagnostic::{Diagnostic, Kind, Result};
 use engine::experiment::{CertaintyGrid, Learned, Member, Plan, Spread, Summary, TestRun, Trail, WINDOW_STEPS};
 use engine::geometry::Point2;
 use engine::report::{
-    CurveData, CurveRow, FrameData, PolicyData, PolicyState, TrajectoryData, certainty_grid, curve_csv, frame,
-    learning_curve, policy, trajectories, write_atomic,
+    CurveData, CurveRow, FrameData, FramePanel, PolicyData, PolicyState, TrajectoryData, certainty_grid, curve_csv,
+    frame, learning_curve, policy, trajectories, write_atomic,
 };
 use engine::store::{policy_to_toml, run_to_toml};
 
@@ -156,8 +156,9 @@ pub(super) fn draw_frame(folder: &Path, plan: &Plan, tested: &TestRun) -> Result
     let title = format!("{} in {}: what the robot sees", plan.behaviour.name(), plan.layout.name);
     frame(&FrameData {
         title: &title,
-        image: &snapshot.image,
-        filtered: &snapshot.mask,
+        width_px: snapshot.image.width_px,
+        height_px: snapshot.image.height_px,
+        panels: &[FramePanel::image("camera", &snapshot.image), FramePanel::mask(&snapshot.mask)],
         rows,
         columns,
         shares: &snapshot.shares,

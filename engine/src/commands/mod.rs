@@ -2,7 +2,9 @@
 
 pub(crate) mod bench;
 mod combine;
+pub(crate) mod filter;
 mod folder;
+pub(crate) mod plugins;
 pub(crate) mod reference;
 pub(crate) mod reproduce;
 pub(crate) mod run;

@@ -3,7 +3,7 @@
 use crate::diagnostic::{nearest_name, printable};
 use crate::sensors::observation::Image;
 use crate::settings::FilterSettings;
-use filter_api::{Filter, FilterError, Format, Frame, FrameMut, Parameter, Plugin};
+use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, Plugin};
 
 use super::registry;
 
@@ -88,6 +88,11 @@ impl Chain {
     #[must_use]
     pub fn mask(&self) -> &[u8] {
         self.stages.last().map_or(&[], |stage| &stage.output)
+    }
+
+    /// What each stage made of the last image, in order: the filter's descriptor and its pixels.
+    pub fn stages(&self) -> impl Iterator<Item = (&'static Descriptor, &[u8])> {
+        self.stages.iter().map(|stage| (stage.plugin.descriptor, stage.output.as_slice()))
     }
 }
 

@@ -1,4 +1,4 @@
-//! One step seen through the pipeline: the camera's image, the filtered image, the grid and its state.
+//! One image seen through the pipeline: the image, what each filter made of it, the grid and its state.
 
 use super::canvas::{Ink, Spot, units};
 use super::sheet::{
@@ -7,6 +7,7 @@ use super::sheet::{
 use super::{Picture, failed};
 use crate::diagnostic::Result;
 use crate::sensors::observation::Image;
+use filter_api::Format;
 
 const GAP_PX: f64 = 28.0;
 /// From one panel to the next, at least; the words around a panel need this much.
@@ -19,10 +20,12 @@ const ROOM_PX: usize = 640;
 pub struct FrameData<'a> {
     /// The heading.
     pub title: &'a str,
-    /// The camera's image.
-    pub image: &'a Image,
-    /// What the filters made of it: one byte for each pixel, a mask of 0 and 1 or grey levels.
-    pub filtered: &'a [u8],
+    /// Pixels in a row of every panel.
+    pub width_px: usize,
+    /// Rows of pixels of every panel.
+    pub height_px: usize,
+    /// The pictures before the grid, left to right: at least one.
+    pub panels: &'a [FramePanel<'a>],
     /// Rows of the grid.
     pub rows: usize,
     /// Columns of the grid.
@@ -37,55 +40,90 @@ pub struct FrameData<'a> {
     pub state: usize,
 }
 
-/// Draws three panels side by side, pixels enlarged by a whole factor.
+/// One picture of the frame.
+#[derive(Debug, Clone, Copy)]
+pub struct FramePanel<'a> {
+    /// The words above it.
+    pub name: &'a str,
+    /// What one pixel holds.
+    pub format: Format,
+    /// Row by row from the top left, as many as the frame says.
+    pub pixels: &'a [u8],
+}
+
+impl<'a> FramePanel<'a> {
+    /// A colour image under a name.
+    #[must_use]
+    pub fn image(name: &'a str, image: &'a Image) -> Self {
+        Self { name, format: Format::Rgb, pixels: &image.pixels }
+    }
+
+    /// The mask that a chain of filters made, 0 or 255.
+    #[must_use]
+    pub fn mask(pixels: &'a [u8]) -> Self {
+        Self { name: "filtered", format: Format::Mask, pixels }
+    }
+
+    /// What is written below it.
+    fn caption(&self, width: usize, height: usize) -> String {
+        match self.format {
+            Format::Rgb => format!("{width} × {height} pixels"),
+            Format::Grey => "grey levels".to_owned(),
+            Format::Mask => {
+                let set = self.pixels.iter().filter(|pixel| **pixel > 0).count();
+                format!("{:.1} % foreground", set as f64 / self.pixels.len() as f64 * 100.0)
+            }
+        }
+    }
+
+    fn colour(&self, pixel: usize) -> [u8; 3] {
+        match self.format {
+            Format::Rgb => [self.pixels[3 * pixel], self.pixels[3 * pixel + 1], self.pixels[3 * pixel + 2]],
+            Format::Grey | Format::Mask => [self.pixels[pixel]; 3],
+        }
+    }
+}
+
+/// Draws the panels and the grid side by side, pixels enlarged by a whole factor.
 ///
 /// # Errors
 /// If the parts do not fit each other, or the picture cannot be encoded.
 pub fn frame(data: &FrameData<'_>) -> Result<Picture> {
     check(data)?;
-    let (width, height) = (data.image.width_px, data.image.height_px);
+    let (width, height) = (data.width_px, data.height_px);
     let keep = width.max(height).div_ceil(ROOM_PX);
     let (columns, rows) = (width.div_ceil(keep), height.div_ceil(keep));
     let zoom = (400 / columns).min(480 / rows).max(1);
     let (panel_width, panel_height) = ((columns * zoom) as f64, (rows * zoom) as f64);
     let apart = (panel_width + GAP_PX).max(LEAST_APART_PX);
     let top = BELOW_TITLE_PX + 30.0;
-    let sheet = Sheet::new(2.0 * MARGIN_PX + 3.0 * apart - GAP_PX, top + panel_height + 74.0, data.title);
+    let panels = data.panels.len();
+    let sheet_width = 2.0 * MARGIN_PX + (panels + 1) as f64 * apart - GAP_PX;
+    let sheet = Sheet::new(sheet_width, top + panel_height + 74.0, data.title);
     let panel = |index: usize| {
         let left = MARGIN_PX + index as f64 * apart + ((apart - GAP_PX - panel_width) / 2.0).floor();
         let min = spot(left, top);
         (min, (min.0 + units(panel_width), min.1 + units(panel_height)))
     };
-    let at = |row: usize, column: usize| row * keep * width + column * keep;
-    let camera = thinned(rows, columns, |row, column| {
-        let from = at(row, column) * 3;
-        [data.image.pixels[from], data.image.pixels[from + 1], data.image.pixels[from + 2]]
-    });
-    let stretch = if data.filtered.iter().all(|level| *level <= 1) { 255 } else { 1 };
-    let foreground = data.filtered.iter().filter(|level| **level > 0).count() as f64 / data.filtered.len() as f64;
-    let mask = data.filtered.iter().all(|level| matches!(level, 0 | 1 | 255));
-    let coverage = if mask { format!("{:.1} % foreground", foreground * 100.0) } else { "grey levels".to_owned() };
-    let filtered = thinned(rows, columns, |row, column| [data.filtered[at(row, column)] * stretch; 3]);
-    let size = format!("{width} × {height} pixels");
-    for (index, (name, below, rgb)) in
-        [("camera", size.as_str(), camera), ("filtered", coverage.as_str(), filtered)].into_iter().enumerate()
-    {
+    for (index, shown) in data.panels.iter().enumerate() {
         let (min, max) = panel(index);
-        title(&sheet, min, max, name, below);
+        title(&sheet, min, max, shown.name, &shown.caption(width, height));
+        let rgb = thinned(rows, columns, |row, column| shown.colour(row * keep * width + column * keep));
         sheet.image(min, max, columns, rows, rgb);
         sheet.border(min, max, FRAME);
     }
-    let (min, max) = panel(2);
+    let (min, max) = panel(panels);
     title(&sheet, min, max, &format!("grid {} × {}: state {}", data.rows, data.columns, data.state), &digits(data));
     grid(&sheet, min, max, data);
     sheet.finish()
 }
 
 fn check(data: &FrameData<'_>) -> Result<()> {
-    let (width, height) = (data.image.width_px, data.image.height_px);
+    let (width, height) = (data.width_px, data.height_px);
     let cells = data.rows * data.columns;
-    if width * height == 0 || data.image.pixels.len() != width * height * 3 || data.filtered.len() != width * height {
-        return Err(failed("the filtered image does not have the size of the camera's image"));
+    let fits = |panel: &FramePanel<'_>| panel.pixels.len() == width * height * panel.format.channels();
+    if width * height == 0 || data.panels.is_empty() || !data.panels.iter().all(fits) {
+        return Err(failed("a panel does not have the size of the frame"));
     }
     if cells == 0 || [data.shares.len(), data.occupied.len(), data.filled.len()] != [cells; 3] {
         return Err(failed("the grid does not have rows times columns cells"));

@@ -1,5 +1,6 @@
 //! Pictures of made-up runs: sizes, labels, places, sameness, and odd inputs.
 
+use filter_api::Format;
 use image::GenericImageView;
 
 use super::*;
@@ -174,18 +175,28 @@ fn odd_worlds_and_paths_are_drawn() {
     }
 }
 
-fn shown<'a>(image: &'a Image, filtered: &'a [u8], flags: &'a [bool; 9]) -> FrameData<'a> {
-    let shares = &[0.0, 0.5, 1.0, 0.0, 0.25, 0.0, 0.0, 0.0, 0.125];
-    FrameData { title: "step", image, filtered, rows: 3, columns: 3, shares, occupied: flags, filled: flags, state: 21 }
+fn shown(image: &Image, filtered: &[u8], flags: &[bool; 9]) -> crate::diagnostic::Result<Picture> {
+    frame(&FrameData {
+        title: "step",
+        width_px: image.width_px,
+        height_px: image.height_px,
+        panels: &[FramePanel::image("camera", image), FramePanel::mask(filtered)],
+        rows: 3,
+        columns: 3,
+        shares: &[0.0, 0.5, 1.0, 0.0, 0.25, 0.0, 0.0, 0.0, 0.125],
+        occupied: flags,
+        filled: flags,
+        state: 21,
+    })
 }
 
 #[test]
 fn a_frame_shows_its_pixels_enlarged_and_its_state() {
     let mut image = Image::new(80, 60);
     image.pixels[..3].copy_from_slice(&[250, 10, 20]);
-    let filtered = vec![1; 4800];
+    let filtered = vec![255; 4800];
     let flags = [true, true, true, false, false, false, false, false, false];
-    let picture = frame(&shown(&image, &filtered, &flags)).unwrap();
+    let picture = shown(&image, &filtered, &flags).unwrap();
     assert_well_formed(&picture.svg);
     for words in ["state 21", "in each column: 1 1 1", "50.0 %", "100.0 % foreground", "data:image/png;base64,"] {
         assert!(picture.svg.contains(words), "{words}");
@@ -197,16 +208,32 @@ fn a_frame_shows_its_pixels_enlarged_and_its_state() {
 }
 
 #[test]
+fn a_frame_shows_every_stage_between_the_image_and_the_grid() {
+    let (grey, image) = (vec![100; 4800], Image::new(80, 60));
+    let (width_px, height_px, flags) = (80, 60, &[false]);
+    let blurred = FramePanel { name: "blur", format: Format::Grey, pixels: &grey };
+    let panels = &[FramePanel::image("photograph", &image), blurred, FramePanel::mask(&grey)];
+    let (rows, columns, shares, occupied, filled) = (1, 1, &[0.0], flags, flags);
+    let data = FrameData { title: "", width_px, height_px, panels, rows, columns, shares, occupied, filled, state: 0 };
+    let picture = frame(&data).unwrap();
+    assert!(picture.svg.contains("blur") && picture.svg.contains("grey levels"));
+    // Four panels of 400 pixels, 428 apart; the second begins at 456.
+    assert_eq!(pixels(&picture).width(), 2 * 28 + 4 * 428 - 28);
+    assert_eq!(pixels(&picture).get_pixel(470, 150).0[..3], [100; 3]);
+    assert_eq!(frame(&FrameData { panels: &[], ..data }).unwrap_err().code, "E-PICTURE");
+}
+
+#[test]
 fn a_frame_of_any_size_is_drawn_and_one_that_does_not_fit_is_refused() {
     let flags = [false; 9];
     for (width, height) in [(1, 1), (1280, 960), (7, 900), (900, 7)] {
         let image = Image::new(width, height);
-        let picture = frame(&shown(&image, &vec![128; width * height], &flags)).unwrap();
+        let picture = shown(&image, &vec![128; width * height], &flags).unwrap();
         let (wide, high) = pixels(&picture).dimensions();
         assert!((1000..=2100).contains(&wide) && high <= 900, "{wide} x {high}");
     }
-    assert_eq!(frame(&shown(&Image::new(8, 6), &[0; 47], &flags)).unwrap_err().code, "E-PICTURE");
-    assert_eq!(frame(&shown(&Image::new(0, 0), &[], &flags)).unwrap_err().code, "E-PICTURE");
+    assert_eq!(shown(&Image::new(8, 6), &[0; 47], &flags).unwrap_err().code, "E-PICTURE");
+    assert_eq!(shown(&Image::new(0, 0), &[], &flags).unwrap_err().code, "E-PICTURE");
 }
 
 fn state(state: usize, visits: u64, best: (f64, f64)) -> PolicyState {

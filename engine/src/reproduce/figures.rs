@@ -8,7 +8,7 @@ use super::job::Learn;
 use crate::diagnostic::Result;
 use crate::experiment::{CertaintyGrid, Overrides, Plan, Snapshot, Spread, Trail, WINDOW_STEPS, test_and_watch};
 use crate::report::{
-    CurveData, FrameData, Picture, TrajectoryData, certainty_grid, frame, learning_curve, trajectories,
+    CurveData, FrameData, FramePanel, Picture, TrajectoryData, certainty_grid, frame, learning_curve, trajectories,
 };
 
 /// Steps of the drive that the certainty grid is made from.
@@ -188,8 +188,9 @@ fn draw_frame(plan: &Plan, snapshot: &Snapshot, title: &str) -> Result<Picture> 
     let (rows, columns) = grid.size();
     frame(&FrameData {
         title,
-        image: &snapshot.image,
-        filtered: &snapshot.mask,
+        width_px: snapshot.image.width_px,
+        height_px: snapshot.image.height_px,
+        panels: &[FramePanel::image("camera", &snapshot.image), FramePanel::mask(&snapshot.mask)],
         rows,
         columns,
         shares: &snapshot.shares,

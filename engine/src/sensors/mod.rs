@@ -1,7 +1,8 @@
 //! What the robot senses: the camera's image and the laser's ranges, drawn from the true world.
 //!
 //! Both sensors work from the flat faces of solids (`surface`). The camera finds which face is seen in which run of
-//! each row (`view`, `drawing`, `spans`), then colours the runs (`texture`, `painting`).
+//! each row (`view`, `drawing`, `spans`), then colours the runs (`texture`, `painting`). Images from elsewhere come as
+//! photographs (`photograph`).
 
 pub mod observation;
 
@@ -11,6 +12,7 @@ mod laser;
 mod lens;
 mod noise;
 mod painting;
+mod photograph;
 mod spans;
 mod surface;
 mod texture;
@@ -22,4 +24,5 @@ mod tests;
 
 pub use camera::Camera;
 pub use laser::Laser;
+pub use photograph::{load_photograph, photograph_files};
 pub use watch::{CameraWatch, self_test};
