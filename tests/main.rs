@@ -15,6 +15,8 @@ mod bad_input;
 mod combine;
 /// Same seed, same bytes: twice, with one thread or two, stored and tested again.
 mod determinism;
+/// Every filter that ships keeps the contract.
+mod filters;
 /// Filters listed and photographs seen through them; what cannot be seen.
 mod photos;
 /// The paper's claims through the program, quickly; the map that a test leaves.

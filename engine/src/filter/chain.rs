@@ -51,7 +51,7 @@ impl Chain {
             if !descriptor.reads.contains(&format) {
                 let message =
                     format!("filter '{}' reads {}, not {}", filter.name, names(descriptor.reads), name(format));
-                return Err(fail((message, Some("put it earlier in the chain".to_owned()))));
+                return Err(fail((message, Some(better_place(descriptor.reads, &stages)))));
             }
             let values = values(index, filter, descriptor.parameters)?;
             let filter = (plugin.create)(&values).map_err(|FilterError(message)| fail((message, None)))?;
@@ -94,6 +94,20 @@ impl Chain {
     pub fn stages(&self) -> impl Iterator<Item = (&'static Descriptor, &[u8])> {
         self.stages.iter().map(|stage| (stage.plugin.descriptor, stage.output.as_slice()))
     }
+}
+
+/// Where in the chain a filter could read what is there, as an advice.
+fn better_place(reads: &[Format], before: &[Stage]) -> String {
+    let written = before.iter().map(|stage| stage.plugin.descriptor.writes);
+    if std::iter::once(Format::Rgb).chain(written).any(|format| reads.contains(&format)) {
+        return "put it earlier in the chain".to_owned();
+    }
+    let wanted = |plugin: &&Plugin| {
+        let descriptor = plugin.descriptor;
+        reads.contains(&descriptor.writes) && !descriptor.reads.iter().all(|format| reads.contains(format))
+    };
+    let names: Vec<_> = registry::built_in().iter().filter(wanted).map(|plugin| plugin.descriptor.name).collect();
+    format!("put one before it that writes {}: {}", self::names(reads), names.join(", "))
 }
 
 fn values(stage: usize, filter: &FilterSettings, parameters: &[Parameter]) -> Result<Vec<f64>, ChainError> {
@@ -158,6 +172,51 @@ mod tests {
         let error = error(&[stage("sobel", &[]), stage("colour", &[])]);
         assert_eq!(error.stage, 1);
         assert_eq!(error.message, "filter 'colour' reads colour, not a mask");
+    }
+
+    /// A frame of 6x4 pixels, dark on the left and `step` brighter on the right.
+    fn step_image(step: u8) -> Image {
+        let mut image = Image::new(6, 4);
+        for pixel in image.pixels.chunks_exact_mut(18).flat_map(|row| row[9..].iter_mut()) {
+            *pixel = step;
+        }
+        image
+    }
+
+    #[test]
+    fn a_blurred_step_is_wider_and_flatter() {
+        // Luma 0 0 0 40 40 40 becomes 0 0 10 30 40 40: norms 0 40 120 120 40 0 instead of 0 0 160 160 0 0.
+        let settings = |threshold| [stage("blur", &[("radius_px", 1.0)]), stage("sobel", &[("threshold", threshold)])];
+        let mask = |threshold| Chain::new(&settings(threshold), 6, 4).unwrap().apply(&step_image(40)).unwrap().to_vec();
+        assert_eq!(mask(121.0), [0; 24]);
+        assert_eq!(mask(120.0), [0, 0, 255, 255, 0, 0].repeat(4));
+        assert_eq!(mask(40.0), [0, 255, 255, 255, 255, 0].repeat(4));
+    }
+
+    #[test]
+    fn a_horizon_clears_the_upper_part_of_the_edges() {
+        let settings = [stage("sobel", &[]), stage("horizon", &[("top", 0.5)])];
+        let mask = Chain::new(&settings, 6, 4).unwrap().apply(&step_image(40)).unwrap().to_vec();
+        assert_eq!(mask, [[0; 12], [0, 0, 255, 255, 0, 0, 0, 0, 255, 255, 0, 0]].concat());
+    }
+
+    #[test]
+    fn a_chain_must_fit_together_from_colour_to_a_mask() {
+        let after_mask = error(&[stage("threshold", &[]), stage("blur", &[])]);
+        assert_eq!(after_mask.message, "filter 'blur' reads colour or grey, not a mask");
+        assert_eq!(after_mask.help.as_deref(), Some("put it earlier in the chain"));
+        let first = error(&[stage("horizon", &[]), stage("sobel", &[])]);
+        assert_eq!((first.stage, first.message.as_str()), (0, "filter 'horizon' reads a mask, not colour"));
+        let help = "put one before it that writes a mask: canny, colour, floor, sobel, threshold";
+        assert_eq!(first.help.as_deref(), Some(help));
+        let grey_at_the_end = error(&[stage("blur", &[])]);
+        assert_eq!(grey_at_the_end.message, "the last filter writes grey, but the grid needs a mask");
+    }
+
+    #[test]
+    fn a_filter_may_refuse_values_that_do_not_go_together() {
+        let error = error(&[stage("canny", &[("low", 80.0), ("high", 40.0)])]);
+        assert_eq!(error.message, "'low' of filter 'canny' is 80, above 'high', which is 40");
     }
 
     #[test]

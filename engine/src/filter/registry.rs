@@ -4,7 +4,8 @@ use crate::diagnostic::nearest_name;
 use filter_api::Plugin;
 
 /// The filters that are linked in, by name.
-const BUILT_IN: &[Plugin] = &[colour::PLUGIN, sobel::PLUGIN];
+const BUILT_IN: &[Plugin] =
+    &[blur::PLUGIN, canny::PLUGIN, colour::PLUGIN, floor::PLUGIN, horizon::PLUGIN, sobel::PLUGIN, threshold::PLUGIN];
 
 /// Every filter that is linked in.
 #[must_use]
@@ -32,10 +33,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_unique_and_every_default_is_in_range() {
+    fn names_are_sorted_and_unique_and_every_default_is_in_range() {
         for (index, plugin) in BUILT_IN.iter().enumerate() {
             let descriptor = plugin.descriptor;
-            assert!(BUILT_IN[index + 1..].iter().all(|other| other.descriptor.name != descriptor.name));
+            assert!(BUILT_IN[index + 1..].iter().all(|other| other.descriptor.name > descriptor.name));
             for parameter in descriptor.parameters {
                 assert!((parameter.min..=parameter.max).contains(&parameter.default), "{}", parameter.name);
             }
@@ -45,6 +46,6 @@ mod tests {
     #[test]
     fn a_misspelt_name_is_answered_with_the_nearest() {
         assert_eq!(find("sobol").unwrap_err(), "did you mean \"sobel\"?");
-        assert_eq!(find("x").unwrap_err(), "there are: colour, sobel");
+        assert_eq!(find("x").unwrap_err(), "there are: blur, canny, colour, floor, horizon, sobel, threshold");
     }
 }

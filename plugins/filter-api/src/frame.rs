@@ -67,6 +67,24 @@ impl<'a> Frame<'a> {
         self.pixels
     }
 
+    /// Writes the brightness of each pixel into `luma`: of colour `(77 R + 150 G + 29 B) / 256`, rounded down (ITU-R
+    /// BT.601 weights in 8 bits); of grey and masks the byte itself.
+    ///
+    /// # Errors
+    /// If `luma` has not one byte for each pixel.
+    pub fn write_luma(&self, luma: &mut [u8]) -> Result<(), FilterError> {
+        check_length(self.width_px, self.height_px, Format::Grey, luma.len())?;
+        if self.format != Format::Rgb {
+            luma.copy_from_slice(self.pixels);
+            return Ok(());
+        }
+        for (pixel, luma) in self.pixels.chunks_exact(3).zip(luma) {
+            let weighted = u16::from(pixel[0]) * 77 + u16::from(pixel[1]) * 150 + u16::from(pixel[2]) * 29;
+            *luma = (weighted >> 8) as u8;
+        }
+        Ok(())
+    }
+
     /// Bytes from one row to the next: width times channels.
     #[must_use]
     pub const fn stride(&self) -> usize {
@@ -138,4 +156,20 @@ fn check_length(width_px: usize, height_px: usize, format: Format, length: usize
         return Ok(());
     }
     Err(FilterError(format!("{length} bytes do not make a frame of {width_px}x{height_px} pixels ({format:?})")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_luma_of_colour_is_weighted_and_that_of_grey_is_the_byte() {
+        let mut luma = [0; 2];
+        // 150 * 40 / 256 = 23.4; white: 256 * 255 / 256.
+        Frame::new(2, 1, Format::Rgb, &[0, 40, 0, 255, 255, 255]).unwrap().write_luma(&mut luma).unwrap();
+        assert_eq!(luma, [23, 255]);
+        Frame::new(2, 1, Format::Grey, &[9, 200]).unwrap().write_luma(&mut luma).unwrap();
+        assert_eq!(luma, [9, 200]);
+        assert!(Frame::new(1, 1, Format::Grey, &[9]).unwrap().write_luma(&mut luma).is_err());
+    }
 }
