@@ -227,7 +227,7 @@ impl Default for Settings {
             recovery: RecoverySettings { to: "nearest".to_owned(), distance_m: 1.1, position_m: 0.1, yaw_deg: 8.6 },
             movers: MoverSettings { speed: 1.0 },
             policies: Vec::new(),
-            combine: CombineSettings { way: "priority".to_owned(), margin: 0.05, scaled: false },
+            combine: CombineSettings { way: "priority".to_owned(), margin: 0.5, scaled: false },
         }
     }
 }

@@ -7,7 +7,8 @@
 //! * **Purity**: the same frame and the same parameters give the same output, whatever was processed before. A filter may
 //!   keep scratch memory between frames, never knowledge.
 //! * **Size**: the output has the width and height of the input. The host allocates both.
-//! * **Time**: `process` allocates nothing after its first frame of a size, reads no clock, file or random number.
+//! * **Time**: `process` allocates nothing after its first frame of a size, reads no clock, file or random number. A
+//!   filter that wraps a library which allocates says so in its README.
 //! * **Errors** are values. A filter never panics on any frame of the formats that its descriptor names.
 //!
 //! A filter crate exports one [`Plugin`]: its [`Descriptor`], which a host can print without starting anything, and the
