@@ -207,7 +207,7 @@ mod tests {
         assert_eq!(after_mask.help.as_deref(), Some("put it earlier in the chain"));
         let first = error(&[stage("horizon", &[]), stage("sobel", &[])]);
         assert_eq!((first.stage, first.message.as_str()), (0, "filter 'horizon' reads a mask, not colour"));
-        let help = "put one before it that writes a mask: canny, colour, floor, sobel, threshold";
+        let help = "put one before it that writes a mask: colour, floor, scharr, sobel, threshold";
         assert_eq!(first.help.as_deref(), Some(help));
         let grey_at_the_end = error(&[stage("blur", &[])]);
         assert_eq!(grey_at_the_end.message, "the last filter writes grey, but the grid needs a mask");
@@ -215,8 +215,8 @@ mod tests {
 
     #[test]
     fn a_filter_may_refuse_values_that_do_not_go_together() {
-        let error = error(&[stage("canny", &[("low", 80.0), ("high", 40.0)])]);
-        assert_eq!(error.message, "'low' of filter 'canny' is 80, above 'high', which is 40");
+        let error = error(&[stage("threshold", &[("invert", 0.5)])]);
+        assert_eq!(error.message, "'invert' of filter 'threshold' must be 0 or 1, not 0.5");
     }
 
     #[test]

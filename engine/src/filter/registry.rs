@@ -5,7 +5,7 @@ use filter_api::Plugin;
 
 /// The filters that are linked in, by name.
 const BUILT_IN: &[Plugin] =
-    &[blur::PLUGIN, canny::PLUGIN, colour::PLUGIN, floor::PLUGIN, horizon::PLUGIN, sobel::PLUGIN, threshold::PLUGIN];
+    &[blur::PLUGIN, colour::PLUGIN, floor::PLUGIN, horizon::PLUGIN, scharr::PLUGIN, sobel::PLUGIN, threshold::PLUGIN];
 
 /// Every filter that is linked in.
 #[must_use]
@@ -46,6 +46,6 @@ mod tests {
     #[test]
     fn a_misspelt_name_is_answered_with_the_nearest() {
         assert_eq!(find("sobol").unwrap_err(), "did you mean \"sobel\"?");
-        assert_eq!(find("x").unwrap_err(), "there are: blur, canny, colour, floor, horizon, sobel, threshold");
+        assert_eq!(find("x").unwrap_err(), "there are: blur, colour, floor, horizon, scharr, sobel, threshold");
     }
 }

@@ -1,0 +1,116 @@
+//! Scharr edges: as Sobel, with a kernel that weighs all directions more evenly.
+//!
+//! The gradients come from `imageproc::gradients`: `gx = [-3 0 3; -10 0 10; -3 0 3]` and its transpose on luma, pixels
+//! outside the frame having the value of the nearest one inside. A pixel is an edge where `gx² + gy² >= threshold²`, so a
+//! step of one grey level has a norm of 16. All of it is whole-number arithmetic.
+//!
+//! One clause of the contract the library does not keep: it allocates both gradients for each frame.
+
+#![forbid(unsafe_code)]
+
+use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, Plugin};
+use image::GrayImage;
+use imageproc::gradients::{horizontal_scharr, vertical_scharr};
+
+/// The filter, ready to be registered.
+pub const PLUGIN: Plugin = Plugin { descriptor: &DESCRIPTOR, create };
+
+const DESCRIPTOR: Descriptor = Descriptor {
+    name: "scharr",
+    version: env!("CARGO_PKG_VERSION"),
+    licence: "MIT OR Apache-2.0",
+    purpose: "Marks edges as sobel does, but weighs all directions more evenly (Scharr).",
+    reads: &[Format::Rgb, Format::Grey],
+    writes: Format::Mask,
+    parameters: &[Parameter {
+        name: "threshold",
+        unit: "norm of the gradient",
+        min: 1.0,
+        max: 5770.0,
+        default: 240.0,
+        purpose: "The norm from which a pixel is an edge; a step of one grey level has 16.",
+    }],
+};
+
+struct Scharr {
+    /// The square of the norm from which a pixel is an edge.
+    least_square: i32,
+    luma: GrayImage,
+}
+
+fn create(values: &[f64]) -> Result<Box<dyn Filter>, FilterError> {
+    let [threshold] = values else {
+        return Err(FilterError(format!("scharr takes 1 parameter, not {}", values.len())));
+    };
+    // Gradients are whole numbers, so comparing with the next whole square is exact.
+    let least_square = (threshold * threshold).ceil() as i32;
+    Ok(Box::new(Scharr { least_square, luma: GrayImage::new(0, 0) }))
+}
+
+impl Filter for Scharr {
+    fn process(&mut self, input: Frame<'_>, mut output: FrameMut<'_>) -> Result<(), FilterError> {
+        output.check_same_size(&input)?;
+        if input.format() == Format::Mask {
+            return Err(FilterError("scharr reads colour or grey frames, not a mask".to_owned()));
+        }
+        let (Ok(width), Ok(height)) = (u32::try_from(input.width_px()), u32::try_from(input.height_px())) else {
+            return Err(FilterError("scharr cannot read a frame as large as this".to_owned()));
+        };
+        if width == 0 || height == 0 {
+            return Ok(());
+        }
+        if self.luma.dimensions() != (width, height) {
+            self.luma = GrayImage::new(width, height);
+        }
+        input.write_luma(&mut self.luma)?;
+        let (across, down) = (horizontal_scharr(&self.luma), vertical_scharr(&self.luma));
+        for ((gx, gy), out) in across.iter().zip(down.iter()).zip(output.pixels()) {
+            let square = i32::from(*gx) * i32::from(*gx) + i32::from(*gy) * i32::from(*gy);
+            *out = if square >= self.least_square { 255 } else { 0 };
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn edges(width: usize, height: usize, grey: &[u8], threshold: f64) -> Vec<u8> {
+        let mut out = vec![7; width * height];
+        let input = Frame::new(width, height, Format::Grey, grey).unwrap();
+        let output = FrameMut::new(width, height, Format::Mask, &mut out).unwrap();
+        create(&[threshold]).unwrap().process(input, output).unwrap();
+        out
+    }
+
+    #[test]
+    fn a_vertical_step_of_15_levels_has_a_norm_of_240_on_both_sides() {
+        let grey: Vec<u8> = [10, 10, 25, 25].repeat(4);
+        assert_eq!(edges(4, 4, &grey, 240.0), [0, 255, 255, 0].repeat(4));
+        assert_eq!(edges(4, 4, &grey, 240.1), [0; 16]);
+    }
+
+    #[test]
+    fn a_diagonal_neighbour_has_less_weight_than_with_sobel() {
+        // The corner neighbours of one pixel of 100 have gx = gy = ±300: a norm of 424.3; the others 1000.
+        let mut grey = [0; 25];
+        grey[12] = 100;
+        let marked = |threshold| edges(5, 5, &grey, threshold).iter().filter(|pixel| **pixel == 255).count();
+        assert_eq!((marked(424.0), marked(425.0), marked(1001.0)), (8, 4, 0));
+    }
+
+    #[test]
+    fn the_border_repeats_the_nearest_pixel_so_a_flat_frame_has_no_edges() {
+        assert_eq!(edges(5, 3, &[200; 15], 1.0), [0; 15]);
+        assert_eq!(edges(1, 1, &[200], 1.0), [0]);
+    }
+
+    #[test]
+    fn a_mask_is_refused() {
+        let mut out = [0];
+        let output = FrameMut::new(1, 1, Format::Mask, &mut out).unwrap();
+        let input = Frame::new(1, 1, Format::Mask, &[0]).unwrap();
+        assert!(create(&[240.0]).unwrap().process(input, output).is_err());
+    }
+}
