@@ -6,8 +6,8 @@ use engine::diagnostic::{Diagnostic, Kind, Result};
 use engine::experiment::{CertaintyGrid, Learned, Member, Plan, Spread, Summary, TestRun, Trail, WINDOW_STEPS};
 use engine::geometry::Point2;
 use engine::report::{
-    CurveData, CurveRow, FrameData, FramePanel, PolicyData, PolicyState, TrajectoryData, certainty_grid, curve_csv,
-    frame, learning_curve, policy, trajectories, write_atomic,
+    CurveData, CurveRow, PolicyData, PolicyState, TrajectoryData, certainty_grid, curve_csv, learning_curve, policy,
+    snapshot_frame, trajectories, write_atomic,
 };
 use engine::store::{policy_to_toml, run_to_toml};
 
@@ -149,24 +149,8 @@ pub(super) fn draw_trails(folder: &Path, plan: &Plan, title: &str, panels: &[(&s
 }
 
 pub(super) fn draw_frame(folder: &Path, plan: &Plan, tested: &TestRun) -> Result<()> {
-    let snapshot = &tested.snapshot;
-    let grid = plan.grid()?;
-    let (rows, columns) = grid.size();
-    let filled = grid.cells(snapshot.state);
     let title = format!("{} in {}: what the robot sees", plan.behaviour.name(), plan.layout.name);
-    frame(&FrameData {
-        title: &title,
-        width_px: snapshot.image.width_px,
-        height_px: snapshot.image.height_px,
-        panels: &[FramePanel::image("camera", &snapshot.image), FramePanel::mask(&snapshot.mask)],
-        rows,
-        columns,
-        shares: &snapshot.shares,
-        occupied: &snapshot.occupied,
-        filled: &filled,
-        state: snapshot.state,
-    })?
-    .write(folder, "frame")
+    snapshot_frame(&title, &tested.snapshot)?.write(folder, "frame")
 }
 
 fn draw_policy(folder: &Path, plan: &Plan, result: &SeedResult) -> Result<()> {

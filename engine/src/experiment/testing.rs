@@ -28,10 +28,14 @@ pub struct Snapshot {
     pub image: Image,
     /// The mask.
     pub mask: Vec<u8>,
+    /// Rows and columns of the grid.
+    pub grid: (usize, usize),
     /// Share of foreground pixels of each cell.
     pub shares: Vec<f32>,
     /// Whether each cell is occupied by itself.
     pub occupied: Vec<bool>,
+    /// The cells that the state stands for, filled columns included.
+    pub filled: Vec<bool>,
     /// The state.
     pub state: usize,
 }
@@ -165,7 +169,9 @@ impl Snapshot {
             image: cycle.observation().image.clone(),
             mask: cycle.mask().to_vec(),
             shares: counts.map(|(cell, count)| *count as f32 / grid.area_px(cell) as f32).collect(),
+            grid: grid.size(),
             occupied: grid.occupied().to_vec(),
+            filled: grid.cells(cycle.state()),
             state: cycle.state(),
         }
     }

@@ -6,6 +6,7 @@ use super::sheet::{
 };
 use super::{Picture, failed};
 use crate::diagnostic::Result;
+use crate::experiment::Snapshot;
 use crate::sensors::observation::Image;
 use filter_api::Format;
 
@@ -38,6 +39,25 @@ pub struct FrameData<'a> {
     pub filled: &'a [bool],
     /// The state's number.
     pub state: usize,
+}
+
+/// Draws a frame that a test kept: the camera's image, the mask, the grid.
+///
+/// # Errors
+/// As [`frame()`].
+pub fn snapshot_frame(title: &str, snapshot: &Snapshot) -> Result<Picture> {
+    frame(&FrameData {
+        title,
+        width_px: snapshot.image.width_px,
+        height_px: snapshot.image.height_px,
+        panels: &[FramePanel::image("camera", &snapshot.image), FramePanel::mask(&snapshot.mask)],
+        rows: snapshot.grid.0,
+        columns: snapshot.grid.1,
+        shares: &snapshot.shares,
+        occupied: &snapshot.occupied,
+        filled: &snapshot.filled,
+        state: snapshot.state,
+    })
 }
 
 /// One picture of the frame.

@@ -30,7 +30,7 @@ pub use certainty::certainty_grid;
 pub use csv::{CurveRow, curve_csv};
 pub use curve::{CurveData, learning_curve};
 pub use disagreements::disagreements_csv;
-pub use frame::{FrameData, FramePanel, frame};
+pub use frame::{FrameData, FramePanel, frame, snapshot_frame};
 pub use policy::{PolicyData, PolicyState, policy};
 pub use trajectory::{TrajectoryData, trajectories};
 

@@ -7,9 +7,7 @@ use super::claims::{ALIASES, CORRIDOR, OBJECT, PLATFORM, WALL};
 use super::job::Learn;
 use crate::diagnostic::Result;
 use crate::experiment::{CertaintyGrid, Overrides, Plan, Snapshot, Spread, Trail, WINDOW_STEPS, test_and_watch};
-use crate::report::{
-    CurveData, FrameData, FramePanel, Picture, TrajectoryData, certainty_grid, frame, learning_curve, trajectories,
-};
+use crate::report::{CurveData, Picture, TrajectoryData, certainty_grid, learning_curve, snapshot_frame, trajectories};
 
 /// Steps of the drive that the certainty grid is made from.
 const MAP_STEPS: u64 = 1_500;
@@ -43,8 +41,8 @@ pub fn figures(measured: &Measured) -> Result<Vec<Figure>> {
         (PLATFORM, "platform-learned", "platform following", 7),
         (OBJECT, "object-learned", "object following", 9),
     ];
-    if let Some((plan, outcome)) = richest(measured, WALL) {
-        let picture = draw_frame(plan, &outcome.tested.snapshot, "From image to state")?;
+    if let Some(outcome) = richest(measured, WALL) {
+        let picture = snapshot_frame("From image to state", &outcome.tested.snapshot)?;
         let caption = "The camera's image, its edges, and the grid of 3 x 3 cells that becomes the state. A cell above an \
                        occupied one counts as occupied.";
         all.push(figure("states", "figure-2", "Figure 2", caption, picture, true));
@@ -81,10 +79,9 @@ fn typical(measured: &Measured, learn: Learn) -> Option<(&Plan, &Outcome)> {
 }
 
 /// The seed whose one kept frame has the most occupied cells, since an empty frame shows nothing.
-fn richest(measured: &Measured, learn: Learn) -> Option<(&Plan, &Outcome)> {
-    let job = measured.job(learn)?;
+fn richest(measured: &Measured, learn: Learn) -> Option<&Outcome> {
     let occupied = |outcome: &&Outcome| outcome.tested.snapshot.occupied.iter().filter(|cell| **cell).count();
-    Some((job.plan.as_ref().ok()?, job.outcomes.iter().rev().max_by_key(occupied)?))
+    measured.job(learn)?.outcomes.iter().rev().max_by_key(occupied)
 }
 
 fn curve(job: &JobResult, beside: &'static str, name: &str, number: u32) -> Result<Figure> {
@@ -170,7 +167,7 @@ fn alike(measured: &Measured) -> Result<Vec<Figure>> {
             100.0 * twins.agreement,
             outcome.summary.seed
         );
-        let picture = draw_frame(plan, snapshot, &format!("One state, two situations: {letter}"))?;
+        let picture = snapshot_frame(&format!("One state, two situations: {letter}"), snapshot)?;
         all.push(figure(
             "hallway",
             &format!("alike-{letter}"),
@@ -181,21 +178,4 @@ fn alike(measured: &Measured) -> Result<Vec<Figure>> {
         ));
     }
     Ok(all)
-}
-
-fn draw_frame(plan: &Plan, snapshot: &Snapshot, title: &str) -> Result<Picture> {
-    let grid = plan.grid()?;
-    let (rows, columns) = grid.size();
-    frame(&FrameData {
-        title,
-        width_px: snapshot.image.width_px,
-        height_px: snapshot.image.height_px,
-        panels: &[FramePanel::image("camera", &snapshot.image), FramePanel::mask(&snapshot.mask)],
-        rows,
-        columns,
-        shares: &snapshot.shares,
-        occupied: &snapshot.occupied,
-        filled: &grid.cells(snapshot.state),
-        state: snapshot.state,
-    })
 }
