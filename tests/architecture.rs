@@ -23,7 +23,10 @@ const IMPORTS: &[(&str, &[&str])] = &[
 const SHARED: &[&str] = &["geometry", "random", "settings", "diagnostic"];
 /// Words of the clock and of chance, and who may say them.
 const ONLY_IN: &[(&str, &[&str])] = &[
-    ("std::time", &["commands", "console"]),
+    // The room of filters only waits for a worker, with a deadline.
+    ("std::time::Duration", &["commands", "console", "filter"]),
+    ("Instant", &["commands", "console"]),
+    ("SystemTime", &["commands", "console"]),
     ("rhai::", &["reward"]),
     ("parry3d", &["world"]),
     ("plotters", &["report"]),
@@ -81,6 +84,17 @@ fn clocks_scripts_and_shapes_stay_in_their_rooms() {
             let fine = !product.contains(word) || rooms.contains(&room.as_str()) || is_test(&path);
             assert!(fine, "{} says {word}", path.display());
         }
+    }
+}
+
+#[test]
+fn unsafe_stands_where_libraries_are_loaded_and_kernels_are_picked() {
+    let allowed = ["engine/src/filter/native.rs", "plugins/sobel/src/kernel.rs", "plugins/filter-api/src/"];
+    for path in ["engine/src", "plugins"].iter().flat_map(|folder| sources(&root().join(folder))) {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let place = path.strip_prefix(root()).unwrap().to_str().unwrap();
+        let used = text.contains("unsafe {") || text.contains("unsafe fn") || text.contains("unsafe impl");
+        assert!(!used || allowed.iter().any(|start| place.starts_with(start)), "{place} is unsafe");
     }
 }
 

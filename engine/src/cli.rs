@@ -28,6 +28,9 @@ pub(crate) enum Command {
     Plugins(PluginsArguments),
     /// Print the reference page of the script language
     Reference(ReferenceArguments),
+    /// Serve one native filter to an engine that runs with --isolate; nothing for people
+    #[command(hide = true)]
+    FilterWorker(FilterWorkerArguments),
 }
 
 impl Command {
@@ -39,7 +42,7 @@ impl Command {
             Self::Reproduce(arguments) => arguments.json,
             Self::Filter(arguments) => arguments.json,
             Self::Plugins(arguments) => arguments.json,
-            Self::Reference(_) => false,
+            Self::Reference(_) | Self::FilterWorker(_) => false,
         }
     }
 }
@@ -76,6 +79,8 @@ pub(crate) struct RunArguments {
     /// Print the summary as JSON on standard output, and nothing else there
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) filters: FilterSources,
 }
 
 #[derive(Debug, Args)]
@@ -100,6 +105,8 @@ pub(crate) struct TestArguments {
     /// Print the figures as JSON on standard output, and nothing else there
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) filters: FilterSources,
 }
 
 #[derive(Debug, Args)]
@@ -119,6 +126,8 @@ pub(crate) struct BenchArguments {
     /// Print the figures as JSON on standard output, and nothing else there
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) filters: FilterSources,
 }
 
 #[derive(Debug, Args)]
@@ -178,6 +187,8 @@ pub(crate) struct FilterArguments {
     /// Print one object for each image as JSON on standard output, and nothing else there
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) filters: FilterSources,
 }
 
 #[derive(Debug, Args)]
@@ -187,6 +198,8 @@ pub(crate) struct PluginsArguments {
     /// Print as JSON on standard output, and nothing else there
     #[arg(long, global = true)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) filters: FilterSources,
 }
 
 #[derive(Debug, Subcommand)]
@@ -196,6 +209,33 @@ pub(crate) enum PluginsCommand {
         /// The filter's name, such as sobel
         name: String,
     },
+}
+
+/// Where filters come from, besides those linked in.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Filters from elsewhere")]
+pub(crate) struct FilterSources {
+    /// A folder of native or WebAssembly filters; may be given again
+    #[arg(long, value_name = "DIR")]
+    pub(crate) filter_dir: Vec<PathBuf>,
+    /// Let one native library be loaded, with all rights that you have; may be given again
+    #[arg(long, value_name = "sha256:DIGEST")]
+    pub(crate) allow_native: Vec<String>,
+    /// A file that allows native libraries: native = ["sha256:..."] [default: trust.toml in ~/.config/engine, if there]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) trust: Option<PathBuf>,
+    /// Run each native filter in a process of its own, so that its crash or endless loop ends only itself
+    #[arg(long)]
+    pub(crate) isolate: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct FilterWorkerArguments {
+    /// The library
+    pub(crate) library: PathBuf,
+    /// Its digest
+    #[arg(long, value_name = "sha256:DIGEST")]
+    pub(crate) allow_native: String,
 }
 
 #[derive(Debug, Args)]

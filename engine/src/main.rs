@@ -35,6 +35,7 @@ fn run(command: &Command, console: &mut Console) -> Result<u8, ConsoleError> {
         Command::Reproduce(arguments) => commands::reproduce::run(arguments, console),
         Command::Filter(arguments) => commands::filter::run(arguments, console),
         Command::Plugins(arguments) => commands::plugins::run(arguments, console),
+        Command::FilterWorker(arguments) => commands::sources::work(arguments),
         Command::Reference(arguments) => commands::reference::run(arguments, console),
     }
 }

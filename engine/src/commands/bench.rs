@@ -51,7 +51,7 @@ pub(crate) fn run(arguments: &BenchArguments, console: &mut Console) -> std::res
     let behaviour = Arc::new(Behaviour::load(&arguments.behaviour)?);
     let (world, set) = (arguments.world.clone(), arguments.set.clone());
     let overrides = Overrides { world, steps: Some(arguments.steps), test_steps: None, set };
-    let plan = Plan::new(behaviour, &overrides)?;
+    let plan = Plan::with_filters(behaviour, &overrides, super::sources::catalogue(&arguments.filters)?)?;
     if !plan.settings.policies.is_empty() {
         let message = format!("'{}' combines policies and learns nothing", plan.behaviour.name());
         let error = Diagnostic::new(Kind::Usage, "E-POLICY", message).help("measure a behaviour that learns");

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use engine::diagnostic::{Diagnostic, Kind, Result, printable};
 use engine::experiment::{Overrides, Plan};
-use engine::filter::{Chain, find};
+use engine::filter::{Catalogue, Chain};
 use engine::learner::Policy;
 use engine::report::{FrameData, FramePanel, Picture, frame};
 use engine::reward::Behaviour;
@@ -16,6 +16,7 @@ use engine::state::Grid;
 use engine::store::{Decider, StoredRun};
 
 use super::folder::create;
+use super::sources::catalogue;
 use crate::cli::FilterArguments;
 use crate::console::{Console, ConsoleError};
 
@@ -38,7 +39,7 @@ struct Seen {
 pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
     let behaviour = Arc::new(Behaviour::load(&arguments.behaviour)?);
     let overrides = Overrides { world: None, steps: None, test_steps: None, set: arguments.set.clone() };
-    let plan = Plan::new(behaviour, &overrides)?;
+    let plan = Plan::with_filters(behaviour, &overrides, catalogue(&arguments.filters)?)?;
     if !plan.settings.policies.is_empty() {
         let message = format!("'{}' combines policies, and each sees with filters of its own", plan.behaviour.name());
         let error = Diagnostic::new(Kind::Usage, "E-POLICY", message).help("give the script of one of its policies");
@@ -55,7 +56,7 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
     for file in &files {
         let camera = &plan.settings.camera;
         let image = load_photograph(file, camera.width_px as usize, camera.height_px as usize)?;
-        let state = grid.encode(chain.apply(&image).map_err(|error| failed(file, &error.0))?);
+        let state = grid.encode(chain.apply(&image).map_err(|error| failed(file, &error.message))?);
         let name = unused(file, &names);
         draw(file, &image, &chain, &grid, state)?.write(&out, &name)?;
         let visits = met.as_ref().map(|policy| visits(policy, state));
@@ -90,14 +91,14 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
 
 /// What a stored run learned, if it sees as this plan does.
 fn met(run: &Path, plan: &Plan) -> Result<Policy> {
-    let stored = StoredRun::load(run)?;
+    let stored = StoredRun::load_with(run, Arc::clone(&plan.filters))?;
     let (own, wanted) = (&stored.plan.settings, &plan.settings);
     let shown = printable(&run.display().to_string());
     let unfit = |message: String, help: &str| Diagnostic::new(Kind::State, "E-POLICY", message).help(help).into();
     let Decider::Learned(policy) = stored.decider else {
         return unfit(format!("'{shown}' combined policies and met no states itself"), "give the run of one of them");
     };
-    let differs = if eyes(own) != eyes(wanted) {
+    let differs = if eyes(own, &plan.filters) != eyes(wanted, &plan.filters) {
         "other filters"
     } else if own.grid != wanted.grid {
         "another grid"
@@ -111,12 +112,12 @@ fn met(run: &Path, plan: &Plan) -> Result<Policy> {
 }
 
 /// Every filter with the value of each of its parameters, given or not.
-fn eyes(settings: &Settings) -> Vec<(&str, Vec<f64>)> {
+fn eyes<'a>(settings: &'a Settings, filters: &Catalogue) -> Vec<(&'a str, Vec<f64>)> {
     let value = |given: &[(String, f64)], name: &str, default: f64| {
         given.iter().find(|(key, _)| key == name).map_or(default, |(_, value)| *value)
     };
     let values = |name: &str, given: &[(String, f64)]| -> Vec<f64> {
-        let parameters = find(name).map_or(&[][..], |plugin| plugin.descriptor.parameters);
+        let parameters = filters.find(name).map_or(&[][..], |entry| entry.descriptor.parameters);
         parameters.iter().map(|parameter| value(given, parameter.name, parameter.default)).collect()
     };
     if settings.filters.is_empty() {

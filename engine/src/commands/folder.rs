@@ -113,7 +113,7 @@ fn write_seed(folder: &Path, plan: &Plan, result: &SeedResult) -> Result<()> {
         })
         .collect();
     write_atomic(&folder.join("curve.csv"), curve_csv(WINDOW_STEPS, &rules, &rows).as_bytes())?;
-    let table = policy_to_toml(plan.behaviour.name(), &plan.settings, &result.learned.policy)?;
+    let table = policy_to_toml(plan, &result.learned.policy)?;
     write_atomic(&folder.join("policy.toml"), table.as_bytes())
 }
 

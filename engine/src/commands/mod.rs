@@ -8,5 +8,6 @@ pub(crate) mod plugins;
 pub(crate) mod reference;
 pub(crate) mod reproduce;
 pub(crate) mod run;
+pub(crate) mod sources;
 mod stop;
 pub(crate) mod test;

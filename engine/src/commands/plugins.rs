@@ -1,52 +1,87 @@
 //! `engine plugins`: the filters that scripts can use, from what each says of itself.
 
-use engine::diagnostic::{Diagnostic, Kind, printable};
-use engine::filter::{built_in, find};
-use filter_api::{Descriptor, Format, Parameter};
+use std::path::Path;
+
+use engine::diagnostic::{Diagnostic, Kind, Result, printable};
+use engine::filter::{Catalogue, Entry, Form};
+use filter_api::{Descriptor, Format, Parameter, ParameterKind};
 use serde_json::{Value, json};
 
+use super::sources::catalogue;
 use crate::cli::{PluginsArguments, PluginsCommand};
 use crate::console::{Console, ConsoleError};
 
-/// How a filter comes into the program; other forms stand beside it once there are some.
-const FORM: &str = "linked in";
-
-pub(crate) fn run(arguments: &PluginsArguments, console: &mut Console) -> Result<u8, ConsoleError> {
+pub(crate) fn run(arguments: &PluginsArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
+    let filters = catalogue(&arguments.filters)?;
     match &arguments.command {
-        Some(PluginsCommand::Show { name }) => show(name, console)?,
-        None => list(console)?,
+        Some(PluginsCommand::Show { name }) => show(&filters, name, console)?,
+        None => list(&filters, console)?,
     }
     Ok(0)
 }
 
-fn list(console: &mut Console) -> Result<(), ConsoleError> {
-    let filters = || built_in().iter().map(|plugin| plugin.descriptor);
-    console.json(&filters().map(entry).collect::<Vec<_>>())?;
+/// A filter of the list, and what became of opening it.
+struct Listed<'a> {
+    name: &'a str,
+    form: Form,
+    path: Option<&'a Path>,
+    entry: Result<std::sync::Arc<Entry>>,
+}
+
+fn list(filters: &Catalogue, console: &mut Console) -> std::result::Result<(), ConsoleError> {
+    let all: Vec<Listed> =
+        filters.list().map(|(name, form, path)| Listed { name, form, path, entry: filters.find(name) }).collect();
+    console.json(&all.iter().map(listed).collect::<Vec<_>>())?;
     let mut rows = vec![["NAME", "VERSION", "FORM", "READS", "WRITES", "PURPOSE"].map(str::to_owned)];
-    rows.extend(filters().map(|filter| {
-        let (reads, writes) = (reads(filter), word(filter.writes));
-        [filter.name, filter.version, FORM, &reads, writes, filter.purpose].map(str::to_owned)
-    }));
+    rows.extend(all.iter().map(row));
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..5).map(width).collect();
     for row in &rows {
         let cells = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:width$}  "));
         console.line(&format!("{}{}", cells.collect::<String>(), row[5]))?;
     }
+    for Listed { name, path, entry, .. } in &all {
+        let Some(path) = path else { continue };
+        console.line(&format!("\n{}: {}", printable(name), printable(&path.display().to_string())))?;
+        match entry {
+            Ok(entry) => console.line(&format!("    sha256:{}", entry.sha256.as_deref().unwrap_or_default()))?,
+            Err(error) => {
+                console.line(&format!("    cannot be used: {error}"))?;
+                console.line(&format!("    {}", error.help.as_deref().unwrap_or_default()))?;
+            }
+        }
+    }
     Ok(())
 }
 
-fn show(name: &str, console: &mut Console) -> Result<(), ConsoleError> {
-    let plugin = find(name).map_err(|help| {
-        let message = format!("there is no filter '{}'", printable(name));
-        Box::new(Diagnostic::new(Kind::Usage, "E-PLUGIN", message).help(help))
+fn row(listed: &Listed) -> [String; 6] {
+    let form = listed.form.name();
+    match &listed.entry {
+        Ok(entry) => {
+            let filter = entry.descriptor;
+            let (reads, writes) = (reads(filter), word(filter.writes));
+            [filter.name, filter.version, form, &reads, writes, filter.purpose].map(str::to_owned)
+        }
+        Err(_) => [&printable(listed.name), "?", form, "?", "?", "cannot be used, see below"].map(str::to_owned),
+    }
+}
+
+fn show(filters: &Catalogue, name: &str, console: &mut Console) -> std::result::Result<(), ConsoleError> {
+    let entry = filters.find(name).map_err(|error| match error.code {
+        // A name on the command line is the command line's mistake.
+        "E-FILTER-SETTING" => Box::new(Diagnostic { kind: Kind::Usage, code: "E-PLUGIN", ..*error }),
+        _ => error,
     })?;
-    let filter = plugin.descriptor;
-    console.json(&manual(filter))?;
+    let filter = entry.descriptor;
+    console.json(&manual(&entry))?;
     console.line(&format!("{} {}", filter.name, filter.version))?;
     console.line(filter.purpose)?;
     console.line("")?;
-    console.line(&format!("form:     {FORM}"))?;
+    console.line(&format!("form:     {}", entry.form.name()))?;
+    if let (Some(path), Some(sha256)) = (&entry.path, &entry.sha256) {
+        console.line(&format!("file:     {}", printable(&path.display().to_string())))?;
+        console.line(&format!("digest:   sha256:{sha256}"))?;
+    }
     console.line(&format!("licence:  {}", filter.licence))?;
     console.line(&format!("reads:    {}", reads(filter)))?;
     console.line(&format!("writes:   {}", word(filter.writes)))?;
@@ -54,8 +89,17 @@ fn show(name: &str, console: &mut Console) -> Result<(), ConsoleError> {
     if filter.parameters.is_empty() {
         console.line("It has no parameters.")?;
     }
-    for Parameter { name, unit, min, max, default, purpose } in filter.parameters {
-        console.line(&format!("{name}: {min} to {max} ({unit}), default {default}"))?;
+    for parameter in filter.parameters {
+        let Parameter { name, unit, min, max, default, purpose, .. } = parameter;
+        match parameter.kind {
+            ParameterKind::Number => console.line(&format!("{name}: {min} to {max} ({unit}), default {default}"))?,
+            ParameterKind::Whole => {
+                console.line(&format!("{name}: {min} to {max} ({unit}, whole), default {default}"))?;
+            }
+            ParameterKind::Switch => {
+                console.line(&format!("{name}: false or true ({unit}), default {}", *default != 0.0))?;
+            }
+        }
         console.line(&format!("    {purpose}"))?;
     }
     console.line("")?;
@@ -63,23 +107,46 @@ fn show(name: &str, console: &mut Console) -> Result<(), ConsoleError> {
     console.line(&format!("    {}", script(filter)))
 }
 
-fn entry(filter: &Descriptor) -> Value {
+fn listed(listed: &Listed) -> Value {
+    match &listed.entry {
+        Ok(entry) => brief(entry),
+        Err(error) => json!({
+            "name": listed.name,
+            "form": listed.form.name(),
+            "path": listed.path.map(|path| path.display().to_string()),
+            "error": { "code": error.code, "message": error.message, "help": error.help },
+        }),
+    }
+}
+
+fn brief(entry: &Entry) -> Value {
+    let filter = entry.descriptor;
     json!({
         "name": filter.name,
         "version": filter.version,
-        "form": FORM,
+        "form": entry.form.name(),
+        "path": entry.path.as_ref().map(|path| path.display().to_string()),
+        "sha256": entry.sha256,
         "reads": filter.reads.iter().map(|format| word(*format)).collect::<Vec<_>>(),
         "writes": word(filter.writes),
         "purpose": filter.purpose,
     })
 }
 
-fn manual(filter: &Descriptor) -> Value {
+fn manual(entry: &Entry) -> Value {
+    let filter = entry.descriptor;
     let parameter = |parameter: &Parameter| {
-        let Parameter { name, unit, min, max, default, purpose } = parameter;
-        json!({ "name": name, "unit": unit, "min": min, "max": max, "default": default, "purpose": purpose })
+        let Parameter { name, kind, unit, min, max, default, purpose } = parameter;
+        let kind = match kind {
+            ParameterKind::Number => "number",
+            ParameterKind::Whole => "whole",
+            ParameterKind::Switch => "switch",
+        };
+        json!({
+            "name": name, "type": kind, "unit": unit, "min": min, "max": max, "default": default, "purpose": purpose,
+        })
     };
-    let mut manual = entry(filter);
+    let mut manual = brief(entry);
     manual["licence"] = json!(filter.licence);
     manual["parameters"] = filter.parameters.iter().map(parameter).collect();
     manual["script"] = json!(script(filter));
@@ -92,7 +159,7 @@ fn script(filter: &Descriptor) -> String {
         return format!("filter(\"{}\");", filter.name);
     }
     let parameters: Vec<String> =
-        filter.parameters.iter().map(|parameter| format!("{}: {}", parameter.name, parameter.default)).collect();
+        filter.parameters.iter().map(|parameter| format!("{}: {}", parameter.name, default(parameter))).collect();
     format!("filter(\"{}\", #{{ {} }});", filter.name, parameters.join(", "))
 }
 
@@ -105,5 +172,13 @@ fn word(format: Format) -> &'static str {
         Format::Rgb => "colour",
         Format::Grey => "grey",
         Format::Mask => "mask",
+    }
+}
+
+/// A default as a script writes it.
+fn default(parameter: &Parameter) -> String {
+    match parameter.kind {
+        ParameterKind::Switch => (parameter.default != 0.0).to_string(),
+        _ => parameter.default.to_string(),
     }
 }

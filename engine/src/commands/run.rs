@@ -10,6 +10,7 @@ use engine::experiment::{Learned, Overrides, Plan, Progress, Spread, Summary, Te
 use engine::reward::Behaviour;
 
 use super::folder::{RunFolder, SeedResult};
+use super::sources::catalogue;
 use super::stop::{INTERRUPTED, on_ctrl_c};
 use crate::cli::RunArguments;
 use crate::console::{Console, ConsoleError};
@@ -18,7 +19,7 @@ pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::resul
     let behaviour = Arc::new(Behaviour::load(&arguments.behaviour)?);
     let (world, set) = (arguments.world.clone(), arguments.set.clone());
     let overrides = Overrides { world, steps: arguments.steps, test_steps: None, set };
-    let plan = Plan::new(behaviour, &overrides)?;
+    let plan = Plan::with_filters(behaviour, &overrides, catalogue(&arguments.filters)?)?;
     let seeds: Vec<u64> = (0..arguments.seeds).map(|index| arguments.seed.wrapping_add(index)).collect();
     let path = out(arguments, plan.behaviour.name(), &seeds);
     if !plan.settings.policies.is_empty() {

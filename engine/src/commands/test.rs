@@ -8,12 +8,13 @@ use engine::store::{Decider, StoredRun};
 
 use super::combine::print_combination;
 use super::folder::TestFolder;
+use super::sources::catalogue;
 use super::stop::{INTERRUPTED, on_ctrl_c};
 use crate::cli::TestArguments;
 use crate::console::{Console, ConsoleError};
 
 pub(crate) fn run(arguments: &TestArguments, console: &mut Console) -> Result<u8, ConsoleError> {
-    let StoredRun { plan, seed, decider } = StoredRun::load(&arguments.run)?;
+    let StoredRun { plan, seed, decider } = StoredRun::load_with(&arguments.run, catalogue(&arguments.filters)?)?;
     let (world, set) = (arguments.world.clone(), arguments.set.clone());
     let plan = plan.with_changes(&Overrides { world, steps: None, test_steps: arguments.steps, set })?;
     let stop = on_ctrl_c()?;

@@ -1,6 +1,6 @@
 //! One way of perceiving: a filter chain and a grid over the camera's image.
 
-use crate::diagnostic::{Diagnostic, Kind, Result};
+use crate::diagnostic::Result;
 use crate::filter::Chain;
 use crate::sensors::observation::Image;
 use crate::state::Grid;
@@ -23,10 +23,7 @@ impl Eyes {
     /// # Errors
     /// If a filter fails.
     pub(super) fn perceive(&mut self, image: &Image) -> Result<usize> {
-        let mask = self
-            .chain
-            .apply(image)
-            .map_err(|error| Box::new(Diagnostic::new(Kind::Limit, "E-FILTER", format!("a filter failed: {error}"))))?;
+        let mask = self.chain.apply(image)?;
         Ok(self.grid.encode(mask))
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::{combination, outlook};
 use crate::diagnostic::{Diagnostic, Kind, Result, nearest_name, printable};
-use crate::filter::Chain;
+use crate::filter::{Catalogue, Chain};
 use crate::geometry::Twist;
 use crate::learner::Mirror;
 use crate::reward::{Behaviour, Judge};
@@ -36,18 +36,28 @@ pub struct Plan {
     pub settings: Settings,
     /// The world.
     pub layout: Arc<Layout>,
+    /// The filters that its chain may use.
+    pub filters: Arc<Catalogue>,
 }
 
 impl Plan {
-    /// Resolves a behaviour, and tries everything that can fail before learning starts.
+    /// Resolves a behaviour that uses linked-in filters, and tries everything that can fail before learning starts.
     ///
     /// # Errors
     /// If a setting, a filter, the grid, the world or the script is wrong.
     pub fn new(behaviour: Arc<Behaviour>, overrides: &Overrides) -> Result<Self> {
+        Self::with_filters(behaviour, overrides, Arc::new(Catalogue::linked_in()))
+    }
+
+    /// The same for a behaviour that may use other filters too.
+    ///
+    /// # Errors
+    /// As [`Plan::new`].
+    pub fn with_filters(behaviour: Arc<Behaviour>, overrides: &Overrides, filters: Arc<Catalogue>) -> Result<Self> {
         let settings = changed(behaviour.settings(), overrides)?;
         let place = if overrides.world.is_some() { None } else { behaviour.place_of("world") };
         let path = find_world(&behaviour, &settings.world, place)?;
-        Self::with_layout(behaviour, settings, Arc::new(Layout::load(&path)?))
+        Self::with_layout(behaviour, settings, Arc::new(Layout::load(&path)?), filters)
     }
 
     /// The same plan with changes; it keeps its world unless another is named.
@@ -60,16 +70,21 @@ impl Plan {
             Some(world) => Arc::new(Layout::load(&find_world(&self.behaviour, world, None)?)?),
             None => self.layout,
         };
-        Self::with_layout(self.behaviour, settings, layout)
+        Self::with_layout(self.behaviour, settings, layout, self.filters)
     }
 
     /// A plan from parts that were resolved before.
     ///
     /// # Errors
     /// As [`Plan::new`].
-    pub fn with_layout(behaviour: Arc<Behaviour>, settings: Settings, layout: Arc<Layout>) -> Result<Self> {
+    pub fn with_layout(
+        behaviour: Arc<Behaviour>,
+        settings: Settings,
+        layout: Arc<Layout>,
+        filters: Arc<Catalogue>,
+    ) -> Result<Self> {
         combination::check(&behaviour, &settings)?;
-        let plan = Self { behaviour, settings, layout };
+        let plan = Self { behaviour, settings, layout, filters };
         plan.chain()?;
         plan.grid()?;
         plan.judge()?;
@@ -85,11 +100,11 @@ impl Plan {
     /// # Errors
     /// If the chain cannot be built; the error points at the script's line.
     pub fn chain(&self) -> Result<Chain> {
-        let camera = &self.settings.camera;
-        Chain::new(&self.settings.filters, camera.width_px as usize, camera.height_px as usize).map_err(|error| {
+        let (width_px, height_px) = (self.settings.camera.width_px as usize, self.settings.camera.height_px as usize);
+        Chain::new(&self.settings.filters, width_px, height_px, &self.filters).map_err(|error| {
             let stage = format!("filter:{}", error.stage);
             let place = error.parameter.map_or(stage.clone(), |parameter| format!("{stage}.{parameter}"));
-            self.point(Diagnostic::new(Kind::Input, "E-FILTER-SETTING", error.message), &place, "here", error.help)
+            self.point(*error.error, &place, "here", None)
         })
     }
 

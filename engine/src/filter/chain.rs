@@ -1,11 +1,15 @@
 //! Filters one after the other, types checked before the first frame.
 
-use crate::diagnostic::{nearest_name, printable};
+use std::sync::Arc;
+
+use filter_api::{Descriptor, FilterError, Format, Frame, FrameMut, Parameter, ParameterKind};
+
+use super::catalogue::{Catalogue, Entry, Form};
+use super::purity;
+use super::running::Running;
+use crate::diagnostic::{Diagnostic, Kind, Result, nearest_name, printable};
 use crate::sensors::observation::Image;
 use crate::settings::FilterSettings;
-use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, Plugin};
-
-use super::registry;
 
 /// What a camera image passes through to become a mask.
 pub struct Chain {
@@ -15,53 +19,64 @@ pub struct Chain {
 }
 
 struct Stage {
-    plugin: &'static Plugin,
-    filter: Box<dyn Filter>,
+    descriptor: &'static Descriptor,
+    filter: Box<dyn Running>,
     output: Vec<u8>,
 }
 
 /// Why a chain cannot be built, and which of its stages (counted from 0) is to blame.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone)]
 pub struct ChainError {
     /// The stage's index in the settings.
     pub stage: usize,
     /// The parameter at fault, if it is one.
     pub parameter: Option<String>,
-    /// What is wrong.
-    pub message: String,
-    /// What to write instead.
-    pub help: Option<String>,
+    /// What is wrong, and what to write instead.
+    pub error: Box<Diagnostic>,
+}
+
+impl ChainError {
+    fn new(stage: usize, message: String, help: Option<String>) -> Self {
+        let error = Diagnostic::new(Kind::Input, "E-FILTER-SETTING", message);
+        Self { stage, parameter: None, error: Box::new(Diagnostic { help, ..error }) }
+    }
 }
 
 impl Chain {
     /// Builds the chain for images of one size. Without any stage it is one Sobel filter with its defaults.
     ///
     /// # Errors
-    /// If a filter or a parameter is unknown, a value is out of range, or a stage cannot read what comes before it.
-    pub fn new(settings: &[FilterSettings], width_px: usize, height_px: usize) -> Result<Self, ChainError> {
+    /// If a filter or a parameter is unknown, a value is out of range, a stage cannot read what comes before it, or a
+    /// stranger's filter may not be loaded or breaks the law.
+    pub fn new(
+        settings: &[FilterSettings],
+        width_px: usize,
+        height_px: usize,
+        catalogue: &Catalogue,
+    ) -> std::result::Result<Self, ChainError> {
         let default = [FilterSettings { name: "sobel".to_owned(), parameters: Vec::new() }];
         let settings = if settings.is_empty() { &default[..] } else { settings };
         let mut stages: Vec<Stage> = Vec::with_capacity(settings.len());
         let mut format = Format::Rgb;
         for (index, filter) in settings.iter().enumerate() {
-            let fail = |(message, help)| ChainError { stage: index, parameter: None, message, help };
-            let plugin = registry::find(&filter.name)
-                .map_err(|help| fail((format!("there is no filter '{}'", printable(&filter.name)), Some(help))))?;
-            let descriptor = plugin.descriptor;
+            let at_stage = |error| ChainError { stage: index, parameter: None, error };
+            let entry = catalogue.find(&filter.name).map_err(at_stage)?;
+            let descriptor = entry.descriptor;
             if !descriptor.reads.contains(&format) {
                 let message =
                     format!("filter '{}' reads {}, not {}", filter.name, names(descriptor.reads), name(format));
-                return Err(fail((message, Some(better_place(descriptor.reads, &stages)))));
+                let place = better_place(descriptor.reads, &stages, catalogue);
+                return Err(ChainError::new(index, message, Some(place)));
             }
             let values = values(index, filter, descriptor.parameters)?;
-            let filter = (plugin.create)(&values).map_err(|FilterError(message)| fail((message, None)))?;
+            let filter = create(&entry, &values, format).map_err(at_stage)?;
             format = descriptor.writes;
-            stages.push(Stage { plugin, filter, output: vec![0; width_px * height_px * format.channels()] });
+            stages.push(Stage { descriptor, filter, output: vec![0; width_px * height_px * format.channels()] });
         }
         if format != Format::Mask {
             let message = format!("the last filter writes {}, but the grid needs a mask", name(format));
             let help = Some("end the chain with a filter that writes a mask, such as sobel or colour".to_owned());
-            return Err(ChainError { stage: settings.len() - 1, parameter: None, message, help });
+            return Err(ChainError::new(settings.len() - 1, message, help));
         }
         Ok(Self { stages, width_px, height_px })
     }
@@ -70,16 +85,18 @@ impl Chain {
     ///
     /// # Errors
     /// If the image has another size than the chain was built for, or a filter fails.
-    pub fn apply(&mut self, image: &Image) -> Result<&[u8], FilterError> {
+    pub fn apply(&mut self, image: &Image) -> Result<&[u8]> {
         let (width, height) = (self.width_px, self.height_px);
-        let mut input = image.frame()?;
+        let wrong =
+            |FilterError(words)| Box::new(Diagnostic::new(Kind::Limit, "E-FILTER", format!("a filter failed: {words}")));
+        let mut input = image.frame().map_err(wrong)?;
         if (input.width_px(), input.height_px()) != (width, height) {
-            return Err(FilterError(format!("the image is not {width}x{height} pixels")));
+            return Err(wrong(FilterError(format!("the image is not {width}x{height} pixels"))));
         }
         for stage in &mut self.stages {
-            let format = stage.plugin.descriptor.writes;
-            stage.filter.process(input, FrameMut::new(width, height, format, &mut stage.output)?)?;
-            input = Frame::new(width, height, format, &stage.output)?;
+            let format = stage.descriptor.writes;
+            stage.filter.process(input, FrameMut::new(width, height, format, &mut stage.output).map_err(wrong)?)?;
+            input = Frame::new(width, height, format, &stage.output).map_err(wrong)?;
         }
         Ok(self.mask())
     }
@@ -92,39 +109,60 @@ impl Chain {
 
     /// What each stage made of the last image, in order: the filter's descriptor and its pixels.
     pub fn stages(&self) -> impl Iterator<Item = (&'static Descriptor, &[u8])> {
-        self.stages.iter().map(|stage| (stage.plugin.descriptor, stage.output.as_slice()))
+        self.stages.iter().map(|stage| (stage.descriptor, stage.output.as_slice()))
     }
+}
+
+/// An instance; of a stranger's filter only after it was seen to keep the law with these values.
+fn create(entry: &Arc<Entry>, values: &[f64], reads: Format) -> Result<Box<dyn Running>> {
+    if entry.form != Form::LinkedIn {
+        purity::check(entry, values, reads)?;
+    }
+    (entry.create)(values)
 }
 
 /// Where in the chain a filter could read what is there, as an advice.
-fn better_place(reads: &[Format], before: &[Stage]) -> String {
-    let written = before.iter().map(|stage| stage.plugin.descriptor.writes);
+fn better_place(reads: &[Format], before: &[Stage], catalogue: &Catalogue) -> String {
+    let written = before.iter().map(|stage| stage.descriptor.writes);
     if std::iter::once(Format::Rgb).chain(written).any(|format| reads.contains(&format)) {
         return "put it earlier in the chain".to_owned();
     }
-    let wanted = |plugin: &&Plugin| {
-        let descriptor = plugin.descriptor;
+    let wanted = |descriptor: &&'static Descriptor| {
         reads.contains(&descriptor.writes) && !descriptor.reads.iter().all(|format| reads.contains(format))
     };
-    let names: Vec<_> = registry::built_in().iter().filter(wanted).map(|plugin| plugin.descriptor.name).collect();
+    let own = catalogue.own().map(|entry| entry.descriptor);
+    let names: Vec<_> = own.filter(wanted).map(|descriptor| descriptor.name).collect();
     format!("put one before it that writes {}: {}", self::names(reads), names.join(", "))
 }
 
-fn values(stage: usize, filter: &FilterSettings, parameters: &[Parameter]) -> Result<Vec<f64>, ChainError> {
+fn values(
+    stage: usize,
+    filter: &FilterSettings,
+    parameters: &[Parameter],
+) -> std::result::Result<Vec<f64>, ChainError> {
     let mut values: Vec<f64> = parameters.iter().map(|parameter| parameter.default).collect();
     for (key, value) in &filter.parameters {
-        let fail = |message, help| ChainError { stage, parameter: Some(key.clone()), message, help: Some(help) };
+        let fail = |message, help| ChainError {
+            parameter: Some(key.clone()),
+            ..ChainError::new(stage, message, Some(help))
+        };
         let Some(index) = parameters.iter().position(|parameter| parameter.name == key) else {
             let names = parameters.iter().map(|parameter| parameter.name);
             let help = match nearest_name(key, names.clone()) {
                 Some(near) => format!("did you mean '{near}'?"),
+                None if parameters.is_empty() => "it has none".to_owned(),
                 None => format!("it has: {}", names.collect::<Vec<_>>().join(", ")),
             };
             return Err(fail(format!("filter '{}' has no parameter '{}'", filter.name, printable(key)), help));
         };
-        let Parameter { min, max, unit, default, .. } = parameters[index];
-        if !(min..=max).contains(value) {
-            let message = format!("'{key}' of filter '{}' must be {min} to {max} ({unit})", filter.name);
+        let Parameter { kind, min, max, unit, default, .. } = parameters[index];
+        let (fits, words) = match kind {
+            ParameterKind::Number => (true, ""),
+            ParameterKind::Whole => (value.fract() == 0.0, ", a whole number"),
+            ParameterKind::Switch => (value.fract() == 0.0, ", which is false or true"),
+        };
+        if !fits || !(min..=max).contains(value) {
+            let message = format!("'{key}' of filter '{}' must be {min} to {max}{words} ({unit})", filter.name);
             return Err(fail(message, format!("the default is {default}")));
         }
         values[index] = *value;
@@ -153,8 +191,12 @@ mod tests {
         FilterSettings { name: name.to_owned(), parameters }
     }
 
-    fn error(settings: &[FilterSettings]) -> ChainError {
-        Chain::new(settings, 4, 4).err().unwrap()
+    fn chain(settings: &[FilterSettings], width_px: usize) -> std::result::Result<Chain, ChainError> {
+        Chain::new(settings, width_px, 4, &Catalogue::linked_in())
+    }
+
+    fn error(settings: &[FilterSettings]) -> Box<Diagnostic> {
+        chain(settings, 4).err().unwrap().error
     }
 
     #[test]
@@ -163,14 +205,19 @@ mod tests {
         for pixel in image.pixels.chunks_exact_mut(12).flat_map(|row| row[6..].iter_mut()) {
             *pixel = 200;
         }
-        let mut chain = Chain::new(&[], 4, 4).unwrap();
+        let mut chain = chain(&[], 4).unwrap();
         assert_eq!(chain.apply(&image).unwrap(), [0, 255, 255, 0].repeat(4));
+    }
+
+    #[test]
+    fn an_error_names_its_stage_and_its_parameter() {
+        let error = chain(&[stage("sobel", &[]), stage("horizon", &[("top", 2.0)])], 4).err().unwrap();
+        assert_eq!((error.stage, error.parameter.as_deref()), (1, Some("top")));
     }
 
     #[test]
     fn a_mask_cannot_feed_a_filter_that_needs_colour() {
         let error = error(&[stage("sobel", &[]), stage("colour", &[])]);
-        assert_eq!(error.stage, 1);
         assert_eq!(error.message, "filter 'colour' reads colour, not a mask");
     }
 
@@ -187,7 +234,7 @@ mod tests {
     fn a_blurred_step_is_wider_and_flatter() {
         // Luma 0 0 0 40 40 40 becomes 0 0 10 30 40 40: norms 0 40 120 120 40 0 instead of 0 0 160 160 0 0.
         let settings = |threshold| [stage("blur", &[("radius_px", 1.0)]), stage("sobel", &[("threshold", threshold)])];
-        let mask = |threshold| Chain::new(&settings(threshold), 6, 4).unwrap().apply(&step_image(40)).unwrap().to_vec();
+        let mask = |threshold| chain(&settings(threshold), 6).unwrap().apply(&step_image(40)).unwrap().to_vec();
         assert_eq!(mask(121.0), [0; 24]);
         assert_eq!(mask(120.0), [0, 0, 255, 255, 0, 0].repeat(4));
         assert_eq!(mask(40.0), [0, 255, 255, 255, 255, 0].repeat(4));
@@ -196,7 +243,7 @@ mod tests {
     #[test]
     fn a_horizon_clears_the_upper_part_of_the_edges() {
         let settings = [stage("sobel", &[]), stage("horizon", &[("top", 0.5)])];
-        let mask = Chain::new(&settings, 6, 4).unwrap().apply(&step_image(40)).unwrap().to_vec();
+        let mask = chain(&settings, 6).unwrap().apply(&step_image(40)).unwrap().to_vec();
         assert_eq!(mask, [[0; 12], [0, 0, 255, 255, 0, 0, 0, 0, 255, 255, 0, 0]].concat());
     }
 
@@ -206,7 +253,7 @@ mod tests {
         assert_eq!(after_mask.message, "filter 'blur' reads colour or grey, not a mask");
         assert_eq!(after_mask.help.as_deref(), Some("put it earlier in the chain"));
         let first = error(&[stage("horizon", &[]), stage("sobel", &[])]);
-        assert_eq!((first.stage, first.message.as_str()), (0, "filter 'horizon' reads a mask, not colour"));
+        assert_eq!(first.message, "filter 'horizon' reads a mask, not colour");
         let help = "put one before it that writes a mask: colour, floor, scharr, sobel, threshold";
         assert_eq!(first.help.as_deref(), Some(help));
         let grey_at_the_end = error(&[stage("blur", &[])]);
@@ -214,9 +261,9 @@ mod tests {
     }
 
     #[test]
-    fn a_filter_may_refuse_values_that_do_not_go_together() {
+    fn a_switch_is_on_or_off() {
         let error = error(&[stage("threshold", &[("invert", 0.5)])]);
-        assert_eq!(error.message, "'invert' of filter 'threshold' must be 0 or 1, not 0.5");
+        assert_eq!(error.message, "'invert' of filter 'threshold' must be 0 to 1, which is false or true (on or off)");
     }
 
     #[test]
@@ -229,6 +276,6 @@ mod tests {
 
     #[test]
     fn an_image_of_another_size_is_refused() {
-        assert!(Chain::new(&[], 4, 4).unwrap().apply(&Image::new(5, 4)).is_err());
+        assert!(chain(&[], 4).unwrap().apply(&Image::new(5, 4)).is_err());
     }
 }

@@ -1,10 +1,21 @@
 //! SEE. The chain of filters that turns a camera image into a mask.
 //!
-//! Filters come from the registry: those linked in today; native libraries and WebAssembly modules enter beside them
-//! through the same `Plugin`. This room never knows a world, a state or a script.
+//! Filters come from a [`Catalogue`]: those linked in, native libraries that the user allowed, and sandboxed WebAssembly
+//! modules, all by the contract of `plugins/filter-api`. This room never knows a world, a state or a script.
 
+mod catalogue;
 mod chain;
-mod registry;
+mod described;
+mod library;
+mod native;
+mod purity;
+mod running;
+mod trust;
+mod wasm;
+mod wire;
+mod worker;
 
+pub use catalogue::{Catalogue, Entry, Form, Sources};
 pub use chain::{Chain, ChainError};
-pub use registry::{built_in, find};
+pub use trust::Trust;
+pub use worker::serve;

@@ -259,10 +259,11 @@ impl Setup<'_> {
         };
         for (key, value) in parameters {
             let (_, position) = self.entry(&key);
-            match number(&value).filter(|number| number.is_finite()) {
+            let switch = value.as_bool().ok().map(|on| f64::from(u8::from(on)));
+            match number(&value).or(switch).filter(|number| number.is_finite()) {
                 Some(number) => filter.parameters.push((key.to_string(), number)),
                 None => {
-                    let message = format!("the parameter '{}' must be a number", printable(&key));
+                    let message = format!("the parameter '{}' must be a number, false or true", printable(&key));
                     return self.wrong(position, message, "found something else", form);
                 }
             }

@@ -45,6 +45,9 @@ fn member(plan: &Plan, index: usize, source: &SourceText) -> Result<Member> {
         let help = "learn it with the grid shape and the actions of this script, or give this script its own";
         wrong(plan, index, message, &format!("'{path}'"), help)
     })?;
+    let mut entries = stored.entries.iter();
+    let foreign = entries.try_for_each(|entry| entry.check(&plan.filters));
+    foreign.map_err(|error| wrong(plan, index, error.message, "this policy", "give its filters: --filter-dir DIR"))?;
     let StoredPolicy { behaviour, filters, grid, policy, .. } = stored;
     let member = Member { name: name.clone(), behaviour, filters, grid, policy, source: source.clone() };
     member.eyes(plan).map_err(|error| wrong(plan, index, error.message, "this policy", "learn its behaviour again"))?;

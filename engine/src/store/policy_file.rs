@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::run_file::FilterEntry;
 use super::toml_error;
 use crate::diagnostic::{Diagnostic, Kind, Result, SourceText};
+use crate::experiment::Plan;
 use crate::geometry::Twist;
 use crate::learner::{Policy, PolicyRow};
 use crate::settings::{FilterSettings, GridSettings, Settings};
@@ -57,13 +58,16 @@ pub struct StoredPolicy {
     pub actions: Vec<Twist>,
     /// What it learned.
     pub policy: Policy,
+    /// Its filter chain as it was written, digests included.
+    pub(super) entries: Vec<FilterEntry>,
 }
 
 /// The text of `policy.toml`; states that were never visited are left out.
 ///
 /// # Errors
 /// Never in practice: only if the table cannot be written as TOML.
-pub fn policy_to_toml(behaviour: &str, settings: &Settings, policy: &Policy) -> Result<String> {
+pub fn policy_to_toml(plan: &Plan, policy: &Policy) -> Result<String> {
+    let settings = &plan.settings;
     let state = policy.rows().iter().enumerate().filter_map(|(index, row)| {
         let row = row.as_ref()?;
         let best = policy.best(index)?.0;
@@ -71,14 +75,14 @@ pub fn policy_to_toml(behaviour: &str, settings: &Settings, policy: &Policy) -> 
     });
     let file = PolicyFile {
         format: FORMAT,
-        behaviour: behaviour.to_owned(),
+        behaviour: plan.behaviour.name().to_owned(),
         rows: settings.grid.rows,
         columns: settings.grid.columns,
         occupied: settings.grid.occupied,
         fill: settings.grid.fill,
         states: policy.rows().len(),
         actions: settings.actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
-        filter: settings.filters.iter().map(FilterEntry::new).collect(),
+        filter: settings.filters.iter().map(|filter| FilterEntry::new(filter, &plan.filters)).collect(),
         state: state.collect(),
     };
     toml::to_string(&file).map_err(|error| {
@@ -115,6 +119,7 @@ impl StoredPolicy {
         Ok(Self {
             behaviour: file.behaviour,
             filters: file.filter.iter().map(FilterEntry::settings).collect(),
+            entries: file.filter,
             grid,
             policy: Policy::new(file.actions.len(), rows),
             actions: file.actions.iter().map(|[linear, angular]| Twist::new(*linear, *angular)).collect(),

@@ -10,8 +10,9 @@ use toml::Table;
 
 use super::members::stored_members;
 use super::{policy_from_toml, read_stored, toml_error};
-use crate::diagnostic::{Diagnostic, Kind, Result, SourceText};
+use crate::diagnostic::{Diagnostic, Kind, Result, SourceText, printable};
 use crate::experiment::{Member, Plan};
+use crate::filter::Catalogue;
 use crate::geometry::Twist;
 use crate::learner::Policy;
 use crate::reward::Behaviour;
@@ -38,16 +39,34 @@ struct RunFile {
 }
 
 /// A filter stage with the parameters that were set.
-#[derive(Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FilterEntry {
     name: String,
+    /// The digest of the file that the filter came from; none for those linked in.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    sha256: Option<String>,
     parameters: BTreeMap<String, f64>,
 }
 
 impl FilterEntry {
-    pub(super) fn new(filter: &FilterSettings) -> Self {
-        Self { name: filter.name.clone(), parameters: filter.parameters.iter().cloned().collect() }
+    pub(super) fn new(filter: &FilterSettings, filters: &Catalogue) -> Self {
+        let sha256 = filters.find(&filter.name).ok().and_then(|entry| entry.sha256.clone());
+        Self { name: filter.name.clone(), sha256, parameters: filter.parameters.iter().cloned().collect() }
+    }
+
+    /// Refuses another file of the same name than was used then.
+    pub(super) fn check(&self, filters: &Catalogue) -> Result<()> {
+        let found = filters.find(&self.name)?;
+        if found.sha256 == self.sha256 {
+            return Ok(());
+        }
+        let digest = |sha256: &Option<String>| sha256.as_ref().map_or("linked in".to_owned(), |sha256| format!("sha256:{sha256}"));
+        let message = format!(
+            "filter '{}' is not the one that was used: then {}, now {}",
+            printable(&self.name), digest(&self.sha256), digest(&found.sha256)
+        );
+        Diagnostic::new(Kind::State, "E-RUN-FILTER", message).help("give the folder of that filter: --filter-dir DIR").into()
     }
 
     pub(super) fn settings(&self) -> FilterSettings {
@@ -107,7 +126,7 @@ pub fn run_to_toml(plan: &Plan, members: &[Member], seed: u64) -> Result<String>
         behaviour: plan.behaviour.name().to_owned(),
         seed,
         actions: settings.actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
-        filters: settings.filters.iter().map(FilterEntry::new).collect(),
+        filters: settings.filters.iter().map(|filter| FilterEntry::new(filter, &plan.filters)).collect(),
         settings: table,
         script: TextEntry::new(plan.behaviour.source()),
         world: TextEntry::new(&plan.layout.source),
@@ -142,6 +161,14 @@ impl StoredRun {
     /// # Errors
     /// If a file is missing, damaged, or of another format.
     pub fn load(folder: &Path) -> Result<Self> {
+        Self::load_with(folder, Arc::new(Catalogue::linked_in()))
+    }
+
+    /// The same for a run that used other filters than those linked in.
+    ///
+    /// # Errors
+    /// As [`StoredRun::load`], and if a filter is missing or another than it was.
+    pub fn load_with(folder: &Path, filters: Arc<Catalogue>) -> Result<Self> {
         let source = read_stored(&folder.join("run.toml"))?;
         let file: RunFile = toml::from_str(&source.text).map_err(|error| toml_error(&source, &error))?;
         if file.format != FORMAT {
@@ -152,7 +179,8 @@ impl StoredRun {
         let behaviour = Arc::new(Behaviour::parse(&file.behaviour, file.script.check(&source)?)?);
         let layout = Arc::new(Layout::parse(file.world.check(&source)?)?);
         let settings = settings(&source, behaviour.settings(), &file)?;
-        let plan = Plan::with_layout(behaviour, settings, layout)?;
+        file.filters.iter().try_for_each(|filter| filter.check(&filters))?;
+        let plan = Plan::with_layout(behaviour, settings, layout, filters)?;
         let decider = if plan.settings.policies.is_empty() {
             let states = plan.grid()?.states();
             let policy = read_stored(&folder.join("policy.toml"))?;

@@ -9,7 +9,7 @@
 
 #![forbid(unsafe_code)]
 
-use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, Plugin};
+use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, ParameterKind, Plugin};
 
 /// The filter, ready to be registered.
 pub const PLUGIN: Plugin = Plugin { descriptor: &DESCRIPTOR, create };
@@ -23,7 +23,8 @@ const DESCRIPTOR: Descriptor = Descriptor {
     writes: Format::Grey,
     parameters: &[Parameter {
         name: "radius_px",
-        unit: "pixels, a whole number",
+        kind: ParameterKind::Whole,
+        unit: "pixels",
         min: 0.0,
         max: 10.0,
         default: 1.0,

@@ -10,7 +10,7 @@
 
 #![forbid(unsafe_code)]
 
-use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, Plugin};
+use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, ParameterKind, Plugin};
 
 /// The filter, ready to be registered.
 pub const PLUGIN: Plugin = Plugin { descriptor: &DESCRIPTOR, create };
@@ -25,6 +25,7 @@ const DESCRIPTOR: Descriptor = Descriptor {
     parameters: &[
         Parameter {
             name: "hue_deg",
+            kind: ParameterKind::Number,
             unit: "degrees",
             min: 0.0,
             max: 360.0,
@@ -33,6 +34,7 @@ const DESCRIPTOR: Descriptor = Descriptor {
         },
         Parameter {
             name: "width_deg",
+            kind: ParameterKind::Number,
             unit: "degrees",
             min: 1.0,
             max: 180.0,
@@ -41,6 +43,7 @@ const DESCRIPTOR: Descriptor = Descriptor {
         },
         Parameter {
             name: "saturation",
+            kind: ParameterKind::Number,
             unit: "share",
             min: 0.01,
             max: 1.0,
@@ -49,6 +52,7 @@ const DESCRIPTOR: Descriptor = Descriptor {
         },
         Parameter {
             name: "dark",
+            kind: ParameterKind::Number,
             unit: "grey levels",
             min: 1.0,
             max: 255.0,

@@ -22,6 +22,27 @@ impl Format {
             Self::Grey | Self::Mask => 1,
         }
     }
+
+    /// Its bit in the C contract.
+    #[must_use]
+    pub const fn bit(self) -> u32 {
+        match self {
+            Self::Rgb => 1,
+            Self::Grey => 2,
+            Self::Mask => 4,
+        }
+    }
+
+    /// The format of a bit, if there is one.
+    #[must_use]
+    pub const fn from_bit(bit: u32) -> Option<Self> {
+        match bit {
+            1 => Some(Self::Rgb),
+            2 => Some(Self::Grey),
+            4 => Some(Self::Mask),
+            _ => None,
+        }
+    }
 }
 
 /// One picture to read: row-major, top row first, no padding.

@@ -1,21 +1,16 @@
 //! The filter contract: a filter turns a frame into a frame.
 //!
-//! # The law
+//! The law stands in `README.md`. A filter crate makes one [`Plugin`]: its [`Descriptor`], which a host can print without
+//! starting anything, and the function that creates an instance from checked parameters. Linked into the engine that is
+//! all; [`export!`] makes a native library or a WebAssembly module of it, through the C contract of `filter.h`.
 //!
-//! * **Frames** are row-major, top row first, left pixel first, without padding between rows. A colour frame has three
-//!   bytes for each pixel (red, green, blue), a grey frame one byte, a mask one byte that is either 0 or 255.
-//! * **Purity**: the same frame and the same parameters give the same output, whatever was processed before. A filter may
-//!   keep scratch memory between frames, never knowledge.
-//! * **Size**: the output has the width and height of the input. The host allocates both.
-//! * **Time**: `process` allocates nothing after its first frame of a size, reads no clock, file or random number. A
-//!   filter that wraps a library which allocates says so in its README.
-//! * **Errors** are values. A filter never panics on any frame of the formats that its descriptor names.
-//!
-//! A filter crate exports one [`Plugin`]: its [`Descriptor`], which a host can print without starting anything, and the
-//! function that creates an instance from checked parameters.
+//! It depends on nothing, and on no compiler newer than Rust 1.63.
 
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 
+pub mod abi;
+#[doc(hidden)]
+pub mod export;
 mod frame;
 
 pub use frame::{Format, Frame, FrameMut};
@@ -44,6 +39,8 @@ pub struct Descriptor {
 pub struct Parameter {
     /// The key in the script: `threshold`.
     pub name: &'static str,
+    /// What kind of number it is.
+    pub kind: ParameterKind,
     /// The unit, in words: `grey levels`.
     pub unit: &'static str,
     /// The least value, included.
@@ -56,6 +53,18 @@ pub struct Parameter {
     pub purpose: &'static str,
 }
 
+/// What kind of number a parameter is; a host refuses every other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum ParameterKind {
+    /// Any finite number.
+    Number = 0,
+    /// A whole number.
+    Whole = 1,
+    /// 0 (off) or 1 (on); a script may also write `false` or `true`.
+    Switch = 2,
+}
+
 /// A running filter.
 pub trait Filter: Send {
     /// Fills `output` from `input`.
@@ -66,7 +75,7 @@ pub trait Filter: Send {
 }
 
 /// What a filter crate exports.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub struct Plugin {
     /// What the filter says of itself.
     pub descriptor: &'static Descriptor,

@@ -9,7 +9,7 @@
 
 #![forbid(unsafe_code)]
 
-use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, Plugin};
+use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, ParameterKind, Plugin};
 
 /// The filter, ready to be registered.
 pub const PLUGIN: Plugin = Plugin { descriptor: &DESCRIPTOR, create };
@@ -27,6 +27,7 @@ const DESCRIPTOR: Descriptor = Descriptor {
     parameters: &[
         Parameter {
             name: "height",
+            kind: ParameterKind::Number,
             unit: "share of the height",
             min: 0.01,
             max: 1.0,
@@ -35,6 +36,7 @@ const DESCRIPTOR: Descriptor = Descriptor {
         },
         Parameter {
             name: "width",
+            kind: ParameterKind::Number,
             unit: "share of the width",
             min: 0.01,
             max: 1.0,
@@ -43,6 +45,7 @@ const DESCRIPTOR: Descriptor = Descriptor {
         },
         Parameter {
             name: "tolerance",
+            kind: ParameterKind::Number,
             unit: "deviations",
             min: 0.5,
             max: 50.0,

@@ -6,7 +6,7 @@
 
 #![forbid(unsafe_code)]
 
-use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, Plugin};
+use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, ParameterKind, Plugin};
 
 /// The filter, ready to be registered.
 pub const PLUGIN: Plugin = Plugin { descriptor: &DESCRIPTOR, create };
@@ -21,6 +21,7 @@ const DESCRIPTOR: Descriptor = Descriptor {
     parameters: &[
         Parameter {
             name: "top",
+            kind: ParameterKind::Number,
             unit: "share of the height",
             min: 0.0,
             max: 1.0,
@@ -29,6 +30,7 @@ const DESCRIPTOR: Descriptor = Descriptor {
         },
         Parameter {
             name: "narrowing",
+            kind: ParameterKind::Number,
             unit: "share of the width",
             min: 0.0,
             max: 1.0,

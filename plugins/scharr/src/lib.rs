@@ -8,7 +8,7 @@
 
 #![forbid(unsafe_code)]
 
-use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, Plugin};
+use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, ParameterKind, Plugin};
 use image::GrayImage;
 use imageproc::gradients::{horizontal_scharr, vertical_scharr};
 
@@ -24,6 +24,7 @@ const DESCRIPTOR: Descriptor = Descriptor {
     writes: Format::Mask,
     parameters: &[Parameter {
         name: "threshold",
+        kind: ParameterKind::Number,
         unit: "norm of the gradient",
         min: 1.0,
         max: 5770.0,

@@ -9,10 +9,14 @@
 
 mod kernel;
 
-use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, Plugin};
+use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, ParameterKind, Plugin};
 
 /// The filter, ready to be registered.
 pub const PLUGIN: Plugin = Plugin { descriptor: &DESCRIPTOR, create };
+
+// One library holds one filter, so the line is left out where several are linked together.
+#[cfg(filter_library)]
+filter_api::export!(PLUGIN);
 
 const DESCRIPTOR: Descriptor = Descriptor {
     name: "sobel",
@@ -23,6 +27,7 @@ const DESCRIPTOR: Descriptor = Descriptor {
     writes: Format::Mask,
     parameters: &[Parameter {
         name: "threshold",
+        kind: ParameterKind::Number,
         unit: "norm of the gradient",
         min: 1.0,
         max: 1443.0,

@@ -4,7 +4,7 @@
 
 #![forbid(unsafe_code)]
 
-use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, Plugin};
+use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, ParameterKind, Plugin};
 
 /// The filter, ready to be registered.
 pub const PLUGIN: Plugin = Plugin { descriptor: &DESCRIPTOR, create };
@@ -19,6 +19,7 @@ const DESCRIPTOR: Descriptor = Descriptor {
     parameters: &[
         Parameter {
             name: "threshold",
+            kind: ParameterKind::Number,
             unit: "grey levels",
             min: 0.0,
             max: 255.0,
@@ -27,7 +28,8 @@ const DESCRIPTOR: Descriptor = Descriptor {
         },
         Parameter {
             name: "invert",
-            unit: "0 or 1",
+            kind: ParameterKind::Switch,
+            unit: "on or off",
             min: 0.0,
             max: 1.0,
             default: 0.0,

@@ -1,0 +1,218 @@
+//! Filters in native libraries, loaded into this process. They are not sandboxed: a library can do all that its user can,
+//! from the moment it is loaded, so only those come in whose digest the user named.
+
+#![allow(unsafe_code, reason = "the room where native plugins are loaded")]
+
+use std::ffi::{CStr, c_char, c_void};
+use std::io::Write;
+use std::path::Path;
+use std::ptr::null_mut;
+
+use filter_api::abi::{
+    MESSAGE_BYTES, OK, PANIC, PLUGIN_SYMBOL, RawDestroy, RawFrame, RawParameter, RawPlugin, RawProcess, RawText,
+};
+use filter_api::{Format, Frame, FrameMut};
+use libloading::Library;
+
+use super::catalogue::{Entry, Form};
+use super::described::{Described, DescribedParameter, LONGEST_TEXT_BYTES, MOST_PARAMETERS};
+use super::running::{Running, failed, refused};
+use super::library;
+use super::trust::Trust;
+use crate::diagnostic::{Diagnostic, Kind, Result, printable};
+
+/// Loads a library that the user allowed.
+///
+/// # Errors
+/// If it is not allowed, is no library for this machine and this version of the contract, or describes itself wrongly.
+pub(super) fn open(path: &Path, trust: &Trust) -> Result<Entry> {
+    let (bytes, sha256) = trust.read(path)?;
+    library::check(path, &bytes)?;
+    let plugin = load(path, &bytes)?;
+    let descriptor = describe(plugin, path)?.check("E-NATIVE-ABI", path)?;
+    let name = descriptor.name;
+    let create = move |values: &[f64]| -> Result<Box<dyn Running>> {
+        let native = Native::new(plugin, values).map_err(|Failure { panicked, words }| {
+            if panicked { failed("E-FILTER-CRASH", name, &words) } else { refused(&words) }
+        })?;
+        Ok(Box::new(InProcess { name, native }))
+    };
+    let create = Box::new(create);
+    Ok(Entry { descriptor, form: Form::Native, path: Some(path.to_owned()), sha256: Some(sha256), create })
+}
+
+/// A plugin of a library, which stays loaded until the program ends.
+#[derive(Clone, Copy)]
+pub(super) struct Loaded(&'static RawPlugin);
+
+// SAFETY: it points at constants of a library that is never unloaded.
+unsafe impl Send for Loaded {}
+// SAFETY: as above; the contract lets create run on many threads at once.
+unsafe impl Sync for Loaded {}
+
+/// Loads the bytes that were checked, not whatever stands at their path by now.
+pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded> {
+    let disk = |error| Box::new(Diagnostic::disk("copy the library", path, &error));
+    // The folder is private to this user, so nobody else can change the copy before it is loaded.
+    let folder = tempfile::tempdir().map_err(disk)?;
+    let copy = folder.path().join(path.file_name().unwrap_or_default());
+    let mut file = std::fs::File::create(&copy).map_err(disk)?;
+    file.write_all(bytes).map_err(disk)?;
+    drop(file);
+    let shown = printable(&path.display().to_string());
+    let wrong = |why: &libloading::Error| {
+        let message = format!("'{shown}' cannot be loaded: {}", printable(&why.to_string()));
+        let help = "a library that it needs may be missing; build it again on this machine";
+        Box::new(Diagnostic::new(Kind::Input, "E-NATIVE-ABI", message).help(help))
+    };
+    // SAFETY: loading runs the library's constructors; the user allowed this very file to do so.
+    let library = unsafe { Library::new(&copy) }.map_err(|error| wrong(&error))?;
+    // Never unloaded: threads, statics and destructors of a library outlive its last filter.
+    let library: &'static Library = Box::leak(Box::new(library));
+    // SAFETY: `library::check` found a symbol of this name, of the size and version of a `RawPlugin`.
+    let symbol = unsafe { library.get::<*const RawPlugin>(PLUGIN_SYMBOL.as_bytes()) }.map_err(|error| wrong(&error))?;
+    // SAFETY: as above; the static is constant and never unloaded.
+    Ok(Loaded(unsafe { &**symbol }))
+}
+
+/// Copies a descriptor out of the library.
+pub(super) fn describe(plugin: Loaded, path: &Path) -> Result<Described> {
+    let raw = plugin.0;
+    let count = raw.parameter_count as usize;
+    let functions = raw.create.is_some() && raw.process.is_some() && raw.destroy.is_some();
+    if !functions || count > MOST_PARAMETERS || (count > 0 && raw.parameters.is_null()) {
+        let message = format!("'{}' leaves out a part of its plugin", printable(&path.display().to_string()));
+        let help = "its author must set create, process and destroy, and a list of at most 64 parameters";
+        return Diagnostic::new(Kind::Input, "E-NATIVE-ABI", message).help(help).into();
+    }
+    // SAFETY: the law says that a plugin points at `parameter_count` parameters.
+    let parameters = if count == 0 { &[] } else { unsafe { std::slice::from_raw_parts(raw.parameters, count) } };
+    Ok(Described {
+        name: text(raw.name),
+        version: text(raw.version),
+        licence: text(raw.licence),
+        purpose: text(raw.purpose),
+        reads: raw.reads,
+        writes: raw.writes,
+        parameters: parameters.iter().map(parameter).collect(),
+    })
+}
+
+fn parameter(raw: &RawParameter) -> DescribedParameter {
+    let RawParameter { kind, min, max, default, .. } = *raw;
+    let (name, unit, purpose) = (text(raw.name), text(raw.unit), text(raw.purpose));
+    DescribedParameter { name, unit, purpose, kind, min, max, default }
+}
+
+/// A text of a descriptor; what is too long to be one becomes an empty text, which no descriptor may have.
+fn text(raw: RawText) -> String {
+    if raw.bytes.is_null() || raw.length as usize > LONGEST_TEXT_BYTES {
+        return String::new();
+    }
+    // SAFETY: the law says that a text points at `length` bytes that live as long as the library.
+    let bytes = unsafe { std::slice::from_raw_parts(raw.bytes, raw.length as usize) };
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// Why a call of a library did not succeed.
+#[derive(Debug, PartialEq)]
+pub(super) struct Failure {
+    /// Whether it broke down, rather than refused.
+    pub(super) panicked: bool,
+    /// Its own words.
+    pub(super) words: String,
+}
+
+/// An instance of a native filter.
+pub(super) struct Native {
+    process: RawProcess,
+    destroy: RawDestroy,
+    instance: *mut c_void,
+}
+
+// SAFETY: the law lets an instance move between threads; it never runs on two at once, since `process` borrows it.
+unsafe impl Send for Native {}
+
+impl Native {
+    /// Creates an instance.
+    pub(super) fn new(plugin: Loaded, values: &[f64]) -> std::result::Result<Self, Failure> {
+        let (Some(create), Some(process), Some(destroy)) = (plugin.0.create, plugin.0.process, plugin.0.destroy) else {
+            return Err(Failure { panicked: false, words: "it has no functions".to_owned() });
+        };
+        let mut instance = null_mut();
+        let mut message = Message::default();
+        // SAFETY: the arguments are as the law says, and live through the call.
+        let status = unsafe { create(values.as_ptr(), values.len() as u32, &raw mut instance, message.pointer()) };
+        message.outcome(status)?;
+        Ok(Self { process, destroy, instance })
+    }
+
+    /// Fills `output` from `input`, which is as large.
+    pub(super) fn process(
+        &mut self,
+        input: Frame<'_>,
+        mut output: FrameMut<'_>,
+    ) -> std::result::Result<(), Failure> {
+        let (width_px, height_px) = (input.width_px() as u32, input.height_px() as u32);
+        let raw = |pixels, format: Format| RawFrame {
+            width_px,
+            height_px,
+            stride_bytes: width_px * format.channels() as u32,
+            format: format.bit(),
+            pixels,
+        };
+        let from = raw(input.pixels().as_ptr().cast_mut(), input.format());
+        let format = output.format();
+        let to = raw(output.pixels().as_mut_ptr(), format);
+        let mut message = Message::default();
+        // SAFETY: the instance is the library's own; the frames are as the law says, equal in size, and live through the
+        // call. The law forbids the library to write through the pixels of its input.
+        let status = unsafe { (self.process)(self.instance, &raw const from, &raw const to, message.pointer()) };
+        message.outcome(status)
+    }
+}
+
+/// A native filter in this process.
+struct InProcess {
+    name: &'static str,
+    native: Native,
+}
+
+impl Running for InProcess {
+    fn process(&mut self, input: Frame<'_>, output: FrameMut<'_>) -> Result<()> {
+        self.native.process(input, output).map_err(|Failure { panicked, words }| {
+            failed(if panicked { "E-FILTER-CRASH" } else { "E-FILTER" }, self.name, &words)
+        })
+    }
+}
+
+impl Drop for Native {
+    fn drop(&mut self) {
+        // SAFETY: the instance is the library's own and is not used again.
+        unsafe { (self.destroy)(self.instance) }
+    }
+}
+
+/// A buffer for what a filter has to say.
+struct Message([u8; MESSAGE_BYTES]);
+
+impl Default for Message {
+    fn default() -> Self {
+        Self([0; MESSAGE_BYTES])
+    }
+}
+
+impl Message {
+    fn pointer(&mut self) -> *mut c_char {
+        self.0.as_mut_ptr().cast()
+    }
+
+    fn outcome(&self, status: i32) -> std::result::Result<(), Failure> {
+        if status == OK {
+            return Ok(());
+        }
+        let words = CStr::from_bytes_until_nul(&self.0).map(CStr::to_string_lossy).unwrap_or_default();
+        let words = if words.is_empty() { "it did not say why".to_owned() } else { words.into_owned() };
+        Err(Failure { panicked: status == PANIC, words })
+    }
+}

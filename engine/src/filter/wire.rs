@@ -1,0 +1,170 @@
+//! What the host of an isolated filter and its worker say to each other: a request, a reply, in turns.
+//!
+//! All numbers are little-endian. A request is one byte that names it, then its fields; a reply is one byte of status, the
+//! length of its payload in four bytes, and the payload.
+
+use std::io::{Error, ErrorKind, Read, Result, Write};
+
+use filter_api::{Format, Frame, FrameMut};
+
+use super::native::{Failure, Loaded, Native};
+
+/// The longest payload: a colour frame of 50 megapixels.
+const LONGEST_PAYLOAD_BYTES: usize = 150_000_000;
+const CREATE: u8 = 1;
+const PROCESS: u8 = 2;
+
+/// What the host asks for.
+pub(super) enum Request<'a> {
+    /// An instance with these values.
+    Create(&'a [f64]),
+    /// A frame made from a frame.
+    Process {
+        /// The frame to read.
+        input: Frame<'a>,
+        /// The format of the frame to send back.
+        writes: Format,
+    },
+}
+
+/// What the worker answers.
+#[derive(Debug, PartialEq)]
+pub(super) enum Reply {
+    /// It worked; the payload.
+    Done(Vec<u8>),
+    /// The filter refused, in its own words.
+    Failed(String),
+    /// The filter broke down, in its own words.
+    Panicked(String),
+}
+
+pub(super) fn write_request(to: &mut impl Write, request: &Request<'_>) -> Result<()> {
+    match request {
+        Request::Create(values) => {
+            to.write_all(&[CREATE])?;
+            to.write_all(&(values.len() as u32).to_le_bytes())?;
+            for value in *values {
+                to.write_all(&value.to_le_bytes())?;
+            }
+        }
+        Request::Process { input, writes } => {
+            to.write_all(&[PROCESS])?;
+            let size = [input.width_px() as u32, input.height_px() as u32];
+            for field in [size[0], size[1], input.format().bit(), writes.bit()] {
+                to.write_all(&field.to_le_bytes())?;
+            }
+            to.write_all(input.pixels())?;
+        }
+    }
+    to.flush()
+}
+
+pub(super) fn write_reply(to: &mut impl Write, reply: &Reply) -> Result<()> {
+    let (status, payload) = match reply {
+        Reply::Done(payload) => (0, payload.as_slice()),
+        Reply::Failed(words) => (1, words.as_bytes()),
+        Reply::Panicked(words) => (2, words.as_bytes()),
+    };
+    to.write_all(&[status])?;
+    to.write_all(&(payload.len() as u32).to_le_bytes())?;
+    to.write_all(payload)?;
+    to.flush()
+}
+
+pub(super) fn read_reply(from: &mut impl Read) -> Result<Reply> {
+    let [status] = read_array(from)?;
+    let length = read_number(from)?;
+    if length > LONGEST_PAYLOAD_BYTES || status > 2 {
+        return Err(Error::new(ErrorKind::InvalidData, "not a reply"));
+    }
+    let mut payload = vec![0; length];
+    from.read_exact(&mut payload)?;
+    let words = |payload: Vec<u8>| String::from_utf8_lossy(&payload).into_owned();
+    Ok(match status {
+        0 => Reply::Done(payload),
+        1 => Reply::Failed(words(payload)),
+        _ => Reply::Panicked(words(payload)),
+    })
+}
+
+/// Answers requests until the host closes the channel.
+pub(super) fn serve(from: &mut impl Read, to: &mut impl Write, plugin: Loaded) -> Result<()> {
+    let mut instance: Option<Native> = None;
+    let (mut input, mut output) = (Vec::new(), Vec::new());
+    loop {
+        let request = match read_array(from) {
+            Ok([request]) => request,
+            Err(error) if error.kind() == ErrorKind::UnexpectedEof => return Ok(()),
+            Err(error) => return Err(error),
+        };
+        let done = match (request, &mut instance) {
+            (CREATE, _) => {
+                let count = read_number(from)?;
+                let values = (0..count).map(|_| Ok(f64::from_le_bytes(read_array(from)?))).collect::<Result<Vec<_>>>()?;
+                Native::new(plugin, &values).map(|made| {
+                    instance = Some(made);
+                    Vec::new()
+                })
+            }
+            (PROCESS, Some(native)) => process(from, native, &mut input, &mut output)?.map(|()| output.clone()),
+            _ => return Err(Error::new(ErrorKind::InvalidData, "not a request")),
+        };
+        let reply = match done {
+            Ok(payload) => Reply::Done(payload),
+            Err(Failure { panicked: true, words }) => Reply::Panicked(words),
+            Err(Failure { panicked: false, words }) => Reply::Failed(words),
+        };
+        write_reply(to, &reply)?;
+    }
+}
+
+fn process(
+    from: &mut impl Read,
+    native: &mut Native,
+    input: &mut Vec<u8>,
+    output: &mut Vec<u8>,
+) -> Result<std::result::Result<(), Failure>> {
+    let invalid = |words: String| Error::new(ErrorKind::InvalidData, words);
+    let (width, height) = (read_number(from)?, read_number(from)?);
+    let mut format = || -> Result<Format> {
+        Format::from_bit(read_number(from)? as u32).ok_or_else(|| invalid("not a format".to_owned()))
+    };
+    let (reads, writes) = (format()?, format()?);
+    input.resize(width * height * reads.channels(), 0);
+    output.resize(width * height * writes.channels(), 0);
+    from.read_exact(input)?;
+    let frame = Frame::new(width, height, reads, input).map_err(|error| invalid(error.0))?;
+    let to = FrameMut::new(width, height, writes, output).map_err(|error| invalid(error.0))?;
+    Ok(native.process(frame, to))
+}
+
+fn read_array<const N: usize>(from: &mut impl Read) -> Result<[u8; N]> {
+    let mut bytes = [0; N];
+    from.read_exact(&mut bytes)?;
+    Ok(bytes)
+}
+
+fn read_number(from: &mut impl Read) -> Result<usize> {
+    Ok(u32::from_le_bytes(read_array(from)?) as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reply_is_read_as_it_was_written() {
+        for reply in [Reply::Done(vec![1, 2, 3]), Reply::Failed("no".to_owned()), Reply::Panicked(String::new())] {
+            let mut bytes = Vec::new();
+            write_reply(&mut bytes, &reply).unwrap();
+            assert_eq!(read_reply(&mut bytes.as_slice()).unwrap(), reply);
+        }
+    }
+
+    #[test]
+    fn a_reply_that_promises_too_much_or_ends_early_is_refused() {
+        assert!(read_reply(&mut [0, 255, 255, 255, 255].as_slice()).is_err());
+        assert!(read_reply(&mut [3, 0, 0, 0, 0].as_slice()).is_err());
+        assert!(read_reply(&mut [0, 4, 0, 0, 0, 1].as_slice()).is_err());
+    }
+}

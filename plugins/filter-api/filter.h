@@ -1,0 +1,139 @@
+/* The filter contract for C: a filter turns a frame into a frame.
+ *
+ * The law in prose stands in README.md beside this file. In short:
+ *
+ *   - Frames are row-major, top row first, left pixel first. Row y begins at pixels + y * stride_bytes.
+ *   - The same frame and parameters give the same output, whatever was processed before.
+ *   - The host owns every frame, text buffer and array of values that it passes; the filter owns its instance.
+ *   - Instances are independent: different ones may run at the same time on different threads, one instance never
+ *     runs twice at once.
+ *   - Everything that a filter_plugin points to lives as long as the library.
+ *
+ * A filter is one file: define the three functions, fill a filter_plugin, and end with FILTER_EXPORT. See
+ * ../examples/invert.c. Nothing but this header is needed, for a native library or for WebAssembly:
+ *
+ *   cc -O2 -shared -fPIC -o invert.so invert.c
+ *   clang --target=wasm32 -O2 -nostdlib -Wl,--no-entry -o invert.wasm invert.c
+ */
+#ifndef ENGINE_FILTER_H
+#define ENGINE_FILTER_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* The version of this contract. A host loads only filters of its own version. */
+#define FILTER_ABI_VERSION 1u
+
+/* What one pixel holds; also the bits of filter_plugin.reads. */
+enum {
+    FILTER_RGB = 1,  /* three bytes: red, green, blue */
+    FILTER_GREY = 2, /* one byte of brightness */
+    FILTER_MASK = 4  /* one byte, 0 or 255 */
+};
+
+/* What kind of number a parameter is. */
+enum {
+    FILTER_NUMBER = 0, /* any finite number */
+    FILTER_WHOLE = 1,  /* a whole number */
+    FILTER_SWITCH = 2  /* 0 (off) or 1 (on) */
+};
+
+/* What create and process return. */
+enum {
+    FILTER_OK = 0,
+    FILTER_ERROR = 1, /* the message says why */
+    FILTER_PANIC = 2  /* the filter broke down; the message may say why */
+};
+
+/* The bytes of every message buffer, the ending 0 included. */
+#define FILTER_MESSAGE_BYTES 256u
+
+/* Text in UTF-8, which needs no ending 0. */
+typedef struct {
+    const char *bytes;
+    uint32_t length;
+} filter_text;
+
+/* FILTER_TEXT("words") fills a filter_text. */
+#define FILTER_TEXT(words) { (words), (uint32_t)(sizeof(words) - 1) }
+
+/* One number that a user may set. */
+typedef struct {
+    double min;           /* the least value, included */
+    double max;           /* the greatest value, included */
+    double default_value; /* where the user gives none */
+    filter_text name;     /* the key in a script: lower case letters, digits and _ */
+    filter_text unit;     /* in words: grey levels */
+    filter_text purpose;  /* one sentence: what it changes */
+    uint32_t kind;        /* FILTER_NUMBER, FILTER_WHOLE or FILTER_SWITCH */
+} filter_parameter;
+
+/* One picture. */
+typedef struct {
+    uint32_t width_px;
+    uint32_t height_px;
+    uint32_t stride_bytes; /* from one row to the next */
+    uint32_t format;       /* one of FILTER_RGB, FILTER_GREY, FILTER_MASK */
+    uint8_t *pixels;
+} filter_frame;
+
+/* What a library says of itself, and its functions. */
+typedef struct filter_plugin {
+    uint32_t abi_version;     /* FILTER_ABI_VERSION; first, in every version */
+    uint32_t plugin_bytes;    /* sizeof(filter_plugin) */
+    uint32_t parameter_bytes; /* sizeof(filter_parameter) */
+    uint32_t frame_bytes;     /* sizeof(filter_frame) */
+    filter_text name;         /* as in scripts, and as the file is called: lower case letters, digits and _ */
+    filter_text version;
+    filter_text licence; /* an SPDX expression */
+    filter_text purpose; /* one sentence: what it does */
+    uint32_t reads;      /* the formats that it reads, as bits */
+    uint32_t writes;     /* the format that it writes */
+    uint32_t parameter_count;
+    const filter_parameter *parameters;
+
+    /* Makes an instance from parameter_count finite values, in order and within their ranges. On failure *instance is
+     * left alone and the message, FILTER_MESSAGE_BYTES long, says why. */
+    int32_t (*create)(const double *values, uint32_t count, void **instance, char *message);
+
+    /* Writes every pixel of output, which is as wide and as high as input and has the format `writes`. */
+    int32_t (*process)(void *instance, const filter_frame *input, const filter_frame *output, char *message);
+
+    /* Frees an instance. */
+    void (*destroy)(void *instance);
+} filter_plugin;
+
+/* FILTER_EXPORT(.name = FILTER_TEXT("invert"), ...); makes the library's one filter known to the host: everything of
+ * filter_plugin from `name` on. Version and sizes are filled in. Once, at the end of the file. */
+#define FILTER_PLUGIN_OF(...)                                                                                          \
+    { FILTER_ABI_VERSION, (uint32_t)sizeof(filter_plugin), (uint32_t)sizeof(filter_parameter),                         \
+      (uint32_t)sizeof(filter_frame), __VA_ARGS__ }
+
+#if defined(__wasm__)
+#define FILTER_EXPORT_AS(name) __attribute__((export_name(name), used))
+#define FILTER_EXPORT(...)                                                                                             \
+    static const filter_plugin filter_exported = FILTER_PLUGIN_OF(__VA_ARGS__);                                        \
+    FILTER_EXPORT_AS("engine_filter") const filter_plugin *filter_export_plugin(void) { return &filter_exported; }     \
+    FILTER_EXPORT_AS("engine_filter_create")                                                                           \
+    int32_t filter_export_create(const double *values, uint32_t count, void **instance, char *message) {               \
+        return filter_exported.create(values, count, instance, message);                                               \
+    }                                                                                                                  \
+    FILTER_EXPORT_AS("engine_filter_process")                                                                          \
+    int32_t filter_export_process(void *instance, const filter_frame *input, const filter_frame *output,               \
+                                  char *message) {                                                                     \
+        return filter_exported.process(instance, input, output, message);                                              \
+    }                                                                                                                  \
+    /* Memory for the host's frames: whole pages, never freed; 0 when there is no more. */                             \
+    FILTER_EXPORT_AS("engine_filter_allocate") void *filter_export_allocate(uint32_t bytes) {                          \
+        size_t page = __builtin_wasm_memory_grow(0, (bytes + (size_t)65535) / 65536);                                  \
+        return page == (size_t)-1 ? (void *)0 : (void *)(page * 65536);                                                \
+    }                                                                                                                  \
+    typedef int filter_exported_once
+#elif defined(_WIN32)
+#define FILTER_EXPORT(...) __declspec(dllexport) const filter_plugin engine_filter = FILTER_PLUGIN_OF(__VA_ARGS__)
+#else
+#define FILTER_EXPORT(...)                                                                                             \
+    __attribute__((visibility("default"))) const filter_plugin engine_filter = FILTER_PLUGIN_OF(__VA_ARGS__)
+#endif
+
+#endif
