@@ -1,4 +1,4 @@
-use engine::filter::built_in;
+use engine::filter::LINKED_IN;
 use engine::random::{Random, Stream};
 use filter_api::{Descriptor, Filter, Format, Frame, FrameMut, Plugin};
 
@@ -71,7 +71,7 @@ fn check(plugin: &Plugin, values: &[f64], random: &mut Random) {
 #[test]
 fn a_frame_and_the_parameters_decide_the_output_whatever_was_seen_before() {
     let mut random = Random::new(1, Stream::Camera);
-    for plugin in built_in() {
+    for plugin in LINKED_IN {
         let all = settings(plugin.descriptor);
         let (defaults, ends) = (&all[0], &all[all.len() - 2..]);
         for values in &all {
@@ -85,7 +85,7 @@ fn a_frame_and_the_parameters_decide_the_output_whatever_was_seen_before() {
 
 #[test]
 fn another_size_or_format_than_agreed_is_an_error_and_no_panic() {
-    for plugin in built_in() {
+    for plugin in LINKED_IN {
         let descriptor = plugin.descriptor;
         let mut filter = (plugin.create)(&settings(descriptor)[0]).unwrap();
         let mut process = |format: Format, width: usize| {
@@ -104,7 +104,7 @@ fn another_size_or_format_than_agreed_is_an_error_and_no_panic() {
 
 #[test]
 fn descriptors_are_complete() {
-    for plugin in built_in() {
+    for plugin in LINKED_IN {
         let descriptor = plugin.descriptor;
         assert!(descriptor.purpose.ends_with('.') && !descriptor.reads.is_empty(), "{}", descriptor.name);
         assert!(!descriptor.version.is_empty() && !descriptor.licence.is_empty(), "{}", descriptor.name);

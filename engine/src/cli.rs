@@ -216,16 +216,16 @@ pub(crate) enum PluginsCommand {
 #[command(next_help_heading = "Filters from elsewhere")]
 pub(crate) struct FilterSources {
     /// A folder of native or WebAssembly filters; may be given again
-    #[arg(long, value_name = "DIR")]
+    #[arg(global = true, long, value_name = "DIR")]
     pub(crate) filter_dir: Vec<PathBuf>,
     /// Let one native library be loaded, with all rights that you have; may be given again
-    #[arg(long, value_name = "sha256:DIGEST")]
+    #[arg(global = true, long, value_name = "sha256:DIGEST")]
     pub(crate) allow_native: Vec<String>,
     /// A file that allows native libraries: native = ["sha256:..."] [default: trust.toml in ~/.config/engine, if there]
-    #[arg(long, value_name = "FILE")]
+    #[arg(global = true, long, value_name = "FILE")]
     pub(crate) trust: Option<PathBuf>,
     /// Run each native filter in a process of its own, so that its crash or endless loop ends only itself
-    #[arg(long)]
+    #[arg(global = true, long)]
     pub(crate) isolate: bool,
 }
 

@@ -84,9 +84,11 @@ fn measure(plan: &Plan, steps: u64) -> Result<Report> {
     let silent = |_| ();
     // The scene's and the noise's tables are built on first use.
     learn(&with_steps(plan, 400), 1, &stop, &silent)?;
-    let one = timed(|| learn(plan, 1, &stop, &silent).map(|_| ()))?;
+    let one = timed(|| learn(plan, 1, &stop, &silent)?.whole().map(|_| ()))?;
     let seeds: Vec<u64> = (1..=cores as u64).collect();
-    let all = timed(|| in_parallel(&seeds, cores, |seed| learn(plan, seed, &stop, &silent).map(|_| ())).map(|_| ()))?;
+    let all = timed(|| {
+        in_parallel(&seeds, cores, |seed| learn(plan, seed, &stop, &silent)?.whole().map(|_| ())).map(|_| ())
+    })?;
     let samples = Samples::record(plan)?;
     let frame = &samples.images[0].pixels;
     let mut copy = vec![0; frame.len()];

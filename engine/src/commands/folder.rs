@@ -35,6 +35,15 @@ impl RunFolder {
         &self.path
     }
 
+    /// Writes the policy of a seed that a failure ended; it stands in the folder of its seed even if there is only one.
+    pub(super) fn keep(&self, plan: &Plan, learned: &Learned) -> Result<PathBuf> {
+        let folder = self.path.join(learned.seed.to_string());
+        create(&folder)?;
+        let path = folder.join("policy.toml");
+        write_atomic(&path, policy_text(plan, learned)?.as_bytes())?;
+        Ok(path)
+    }
+
     /// Writes the figures, the policy and the pictures; for many seeds, a folder for each and the spread above them.
     pub(super) fn write(&self, plan: &Plan, results: &[SeedResult]) -> Result<()> {
         let [result] = results else { return self.write_many(plan, results) };
@@ -113,8 +122,12 @@ fn write_seed(folder: &Path, plan: &Plan, result: &SeedResult) -> Result<()> {
         })
         .collect();
     write_atomic(&folder.join("curve.csv"), curve_csv(WINDOW_STEPS, &rules, &rows).as_bytes())?;
-    let table = policy_to_toml(plan, &result.learned.policy)?;
+    let table = policy_text(plan, &result.learned)?;
     write_atomic(&folder.join("policy.toml"), table.as_bytes())
+}
+
+fn policy_text(plan: &Plan, learned: &Learned) -> Result<String> {
+    policy_to_toml(plan.behaviour.name(), &plan.settings, &plan.filters, &learned.policy)
 }
 
 fn draw_curve(folder: &Path, plan: &Plan, results: &[&SeedResult]) -> Result<()> {

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use engine::diagnostic::Result;
-use engine::experiment::{Learned, Overrides, Plan, Progress, Spread, Summary, TestRun, in_parallel, learn, test};
+use engine::experiment::{Overrides, Plan, Progress, Spread, Summary, in_parallel, learn, test};
 use engine::reward::Behaviour;
 
 use super::folder::{RunFolder, SeedResult};
@@ -29,7 +29,7 @@ pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::resul
 
     let stop = on_ctrl_c()?;
     let threads = arguments.threads.unwrap_or(0) as usize;
-    let results = learn_all(&plan, &seeds, threads, &stop, console)?;
+    let results = learn_all(&plan, &folder, &seeds, threads, &stop, console)?;
     folder.write(&plan, &results)?;
 
     let interrupted = stop.load(Ordering::Relaxed);
@@ -64,6 +64,7 @@ fn out(arguments: &RunArguments, name: &str, seeds: &[u64]) -> PathBuf {
 
 fn learn_all(
     plan: &Plan,
+    folder: &RunFolder,
     seeds: &[u64],
     threads: usize,
     stop: &AtomicBool,
@@ -82,7 +83,14 @@ fn learn_all(
         }
     };
     let results = in_parallel(seeds, threads, |seed| {
-        let (started, learned, tested) = learn_and_test(plan, seed, stop, &report)?;
+        let started = Instant::now();
+        let mut learned = learn(plan, seed, stop, &report)?;
+        if let Some(fault) = learned.fault.take() {
+            let kept = folder.keep(plan, &learned)?;
+            console.note(&format!("what was learned in {} steps is kept in {}", learned.steps, kept.display()));
+            return Err(fault);
+        }
+        let tested = test(plan, &learned.policy, seed, stop)?;
         let summary = Summary::new(plan, &learned, tested.figures.clone(), started.elapsed().as_secs_f64());
         if bar.is_hidden() && !plain {
             console.note(&format!("seed {seed}: {}", one_line(&summary)));
@@ -91,18 +99,6 @@ fn learn_all(
     });
     bar.finish_and_clear();
     results
-}
-
-fn learn_and_test(
-    plan: &Plan,
-    seed: u64,
-    stop: &AtomicBool,
-    report: &(dyn Fn(Progress) + Sync),
-) -> Result<(Instant, Learned, TestRun)> {
-    let started = Instant::now();
-    let learned = learn(plan, seed, stop, report)?;
-    let tested = test(plan, &learned.policy, seed, stop)?;
-    Ok((started, learned, tested))
 }
 
 fn one_line(summary: &Summary) -> String {

@@ -36,7 +36,8 @@ impl Member {
             let message = format!("policy \"{}\" cannot see here: {message}", printable(&self.name));
             Box::new(Diagnostic::new(Kind::Input, "E-POLICY", message))
         };
-        let chain = Chain::new(&self.filters, width_px, height_px, &plan.filters).map_err(|error| wrong(&error.error.message))?;
+        let chain = Chain::new(&self.filters, width_px, height_px, &plan.filters)
+            .map_err(|error| wrong(&error.error.message))?;
         let grid = Grid::new(&self.grid, width_px, height_px).map_err(|error| wrong(&error.0))?;
         Ok(Eyes::new(chain, grid))
     }

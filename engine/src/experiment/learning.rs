@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::digest::StateHash;
 use super::trail::{Recorder, Trail};
 use super::{Cycle, Plan, Tally, WINDOW_STEPS};
-use crate::diagnostic::Result;
+use crate::diagnostic::{Diagnostic, Result};
 use crate::learner::{Learner, Policy, Transition};
 use crate::random::{Random, Stream};
 use crate::robot::SimulatedRobot;
@@ -36,12 +36,25 @@ pub struct Learned {
     pub early: Trail,
     /// Hash over every step and the table, 64 hexadecimal digits.
     pub state_hash: String,
+    /// Why learning ended early, if a filter, a sensor or the script failed.
+    pub fault: Option<Box<Diagnostic>>,
 }
 
-/// Learns a plan under a seed, until its steps are done or `stop` is set.
+impl Learned {
+    /// The same, if nothing failed.
+    ///
+    /// # Errors
+    /// The failure that ended learning early.
+    pub fn whole(mut self) -> Result<Self> {
+        self.fault.take().map_or(Ok(self), Err)
+    }
+}
+
+/// Learns a plan under a seed, until its steps are done, `stop` is set, or a sensor, a filter or the script fails: what was
+/// learned before is kept, and the failure with it.
 ///
 /// # Errors
-/// If a sensor, a filter or the script fails.
+/// If it fails before the first step is done.
 pub fn learn(plan: &Plan, seed: u64, stop: &AtomicBool, report: &(dyn Fn(Progress) + Sync)) -> Result<Learned> {
     let settings = &plan.settings;
     let robot = SimulatedRobot::new(&plan.layout, settings, seed)?;
@@ -54,10 +67,17 @@ pub fn learn(plan: &Plan, seed: u64, stop: &AtomicBool, report: &(dyn Fn(Progres
     let mut tally = Tally::new(plan.behaviour.rules().len(), settings.run.steps);
     let mut early = Recorder::new(WINDOW_STEPS, cycle.robot().world());
     let mut hash = StateHash::default();
-    let mut steps = 0;
+    let (mut steps, mut fault) = (0, None);
     while steps < settings.run.steps {
         let action = learner.choose(cycle.state());
-        let step = cycle.step(action)?;
+        let step = match cycle.step(action) {
+            Ok(step) => step,
+            Err(error) if steps == 0 => return Err(error),
+            Err(error) => {
+                fault = Some(error);
+                break;
+            }
+        };
         learner.learn(&Transition {
             state: step.state,
             action: step.action,
@@ -70,7 +90,10 @@ pub fn learn(plan: &Plan, seed: u64, stop: &AtomicBool, report: &(dyn Fn(Progres
         early.follow(cycle.robot().world(), step.failed());
         if step.recover {
             learner.forget();
-            cycle.recover()?;
+            fault = cycle.recover().err();
+            if fault.is_some() {
+                break;
+            }
             early.jump(cycle.robot().world());
         }
         if tally.count(&step, cycle.fired()) {
@@ -89,5 +112,6 @@ pub fn learn(plan: &Plan, seed: u64, stop: &AtomicBool, report: &(dyn Fn(Progres
         policy: learner.policy(),
         early: early.finish(),
         state_hash: hash.finish(learner.table().values()),
+        fault,
     })
 }

@@ -14,7 +14,7 @@ use super::{native, wasm, worker};
 use crate::diagnostic::{Diagnostic, Kind, Result, nearest_name, printable};
 
 /// The filters that are linked in, by name.
-const LINKED_IN: &[Plugin] =
+pub const LINKED_IN: &[Plugin] =
     &[blur::PLUGIN, colour::PLUGIN, floor::PLUGIN, horizon::PLUGIN, scharr::PLUGIN, sobel::PLUGIN, threshold::PLUGIN];
 
 /// How a filter comes into the program.

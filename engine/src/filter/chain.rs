@@ -87,8 +87,9 @@ impl Chain {
     /// If the image has another size than the chain was built for, or a filter fails.
     pub fn apply(&mut self, image: &Image) -> Result<&[u8]> {
         let (width, height) = (self.width_px, self.height_px);
-        let wrong =
-            |FilterError(words)| Box::new(Diagnostic::new(Kind::Limit, "E-FILTER", format!("a filter failed: {words}")));
+        let wrong = |FilterError(words)| {
+            Box::new(Diagnostic::new(Kind::Limit, "E-FILTER", format!("a filter failed: {words}")))
+        };
         let mut input = image.frame().map_err(wrong)?;
         if (input.width_px(), input.height_px()) != (width, height) {
             return Err(wrong(FilterError(format!("the image is not {width}x{height} pixels"))));
@@ -142,10 +143,8 @@ fn values(
 ) -> std::result::Result<Vec<f64>, ChainError> {
     let mut values: Vec<f64> = parameters.iter().map(|parameter| parameter.default).collect();
     for (key, value) in &filter.parameters {
-        let fail = |message, help| ChainError {
-            parameter: Some(key.clone()),
-            ..ChainError::new(stage, message, Some(help))
-        };
+        let fail =
+            |message, help| ChainError { parameter: Some(key.clone()), ..ChainError::new(stage, message, Some(help)) };
         let Some(index) = parameters.iter().position(|parameter| parameter.name == key) else {
             let names = parameters.iter().map(|parameter| parameter.name);
             let help = match nearest_name(key, names.clone()) {

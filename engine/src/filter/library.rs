@@ -55,12 +55,7 @@ fn is_plugin(name: object::read::Result<&str>) -> bool {
 
 /// Compares the first four numbers of a plugin, which stand in the file as they will stand in memory.
 fn wrong_version(head: &[u8], symbol_bytes: u64) -> Option<(String, String)> {
-    let numbers: Vec<u32> = head
-        .as_chunks::<4>()
-        .0
-        .iter()
-        .map(|bytes| u32::from_ne_bytes(*bytes))
-        .collect();
+    let numbers: Vec<u32> = head.as_chunks::<4>().0.iter().map(|bytes| u32::from_ne_bytes(*bytes)).collect();
     let [version, plugin, parameter, frame] = numbers[..] else { return None };
     if version != ABI_VERSION {
         let what = format!("was built for version {version} of the filter contract, this engine has {ABI_VERSION}");

@@ -15,7 +15,7 @@ mod wasm;
 mod wire;
 mod worker;
 
-pub use catalogue::{Catalogue, Entry, Form, Sources};
+pub use catalogue::{Catalogue, Entry, Form, LINKED_IN, Sources};
 pub use chain::{Chain, ChainError};
 pub use trust::Trust;
 pub use worker::serve;

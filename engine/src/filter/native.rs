@@ -16,8 +16,8 @@ use libloading::Library;
 
 use super::catalogue::{Entry, Form};
 use super::described::{Described, DescribedParameter, LONGEST_TEXT_BYTES, MOST_PARAMETERS};
-use super::running::{Running, failed, refused};
 use super::library;
+use super::running::{Running, failed, refused};
 use super::trust::Trust;
 use crate::diagnostic::{Diagnostic, Kind, Result, printable};
 
@@ -148,11 +148,7 @@ impl Native {
     }
 
     /// Fills `output` from `input`, which is as large.
-    pub(super) fn process(
-        &mut self,
-        input: Frame<'_>,
-        mut output: FrameMut<'_>,
-    ) -> std::result::Result<(), Failure> {
+    pub(super) fn process(&mut self, input: Frame<'_>, mut output: FrameMut<'_>) -> std::result::Result<(), Failure> {
         let (width_px, height_px) = (input.width_px() as u32, input.height_px() as u32);
         let raw = |pixels, format: Format| RawFrame {
             width_px,

@@ -100,7 +100,8 @@ pub(super) fn serve(from: &mut impl Read, to: &mut impl Write, plugin: Loaded) -
         let done = match (request, &mut instance) {
             (CREATE, _) => {
                 let count = read_number(from)?;
-                let values = (0..count).map(|_| Ok(f64::from_le_bytes(read_array(from)?))).collect::<Result<Vec<_>>>()?;
+                let values =
+                    (0..count).map(|_| Ok(f64::from_le_bytes(read_array(from)?))).collect::<Result<Vec<_>>>()?;
                 Native::new(plugin, &values).map(|made| {
                     instance = Some(made);
                     Vec::new()

@@ -125,7 +125,11 @@ struct Worker {
 impl Worker {
     fn spawn(launch: &Launch) -> Result<Self> {
         let mut command = Command::new(&launch.program);
-        command.arg("filter-worker").arg(format!("--allow-native=sha256:{}", launch.sha256)).arg("--").arg(&launch.path);
+        command
+            .arg("filter-worker")
+            .arg(format!("--allow-native=sha256:{}", launch.sha256))
+            .arg("--")
+            .arg(&launch.path);
         // What a filter prints is nobody's business; its replies go through a channel of their own.
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
         let failed = |error| Box::new(Diagnostic::disk("start the worker", &launch.program, &error));

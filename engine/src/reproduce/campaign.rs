@@ -202,7 +202,7 @@ impl Job {
 
     fn learn_and_test(&self, seed: u64, stop: &AtomicBool, done: &(dyn Fn(u64) + Sync)) -> Result<Option<Outcome>> {
         let Ok(plan) = &self.plan else { return Ok(None) };
-        let learned = learn(plan, seed, stop, &|_| done(WINDOW_STEPS))?;
+        let learned = learn(plan, seed, stop, &|_| done(WINDOW_STEPS))?.whole()?;
         let tested = test(plan, &learned.policy, seed, stop)?;
         done(plan.settings.run.test_steps);
         let trials = (self.trials.iter())

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::run_file::FilterEntry;
 use super::toml_error;
 use crate::diagnostic::{Diagnostic, Kind, Result, SourceText};
-use crate::experiment::Plan;
+use crate::filter::Catalogue;
 use crate::geometry::Twist;
 use crate::learner::{Policy, PolicyRow};
 use crate::settings::{FilterSettings, GridSettings, Settings};
@@ -66,8 +66,7 @@ pub struct StoredPolicy {
 ///
 /// # Errors
 /// Never in practice: only if the table cannot be written as TOML.
-pub fn policy_to_toml(plan: &Plan, policy: &Policy) -> Result<String> {
-    let settings = &plan.settings;
+pub fn policy_to_toml(behaviour: &str, settings: &Settings, filters: &Catalogue, policy: &Policy) -> Result<String> {
     let state = policy.rows().iter().enumerate().filter_map(|(index, row)| {
         let row = row.as_ref()?;
         let best = policy.best(index)?.0;
@@ -75,14 +74,14 @@ pub fn policy_to_toml(plan: &Plan, policy: &Policy) -> Result<String> {
     });
     let file = PolicyFile {
         format: FORMAT,
-        behaviour: plan.behaviour.name().to_owned(),
+        behaviour: behaviour.to_owned(),
         rows: settings.grid.rows,
         columns: settings.grid.columns,
         occupied: settings.grid.occupied,
         fill: settings.grid.fill,
         states: policy.rows().len(),
         actions: settings.actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
-        filter: settings.filters.iter().map(|filter| FilterEntry::new(filter, &plan.filters)).collect(),
+        filter: settings.filters.iter().map(|filter| FilterEntry::new(filter, filters)).collect(),
         state: state.collect(),
     };
     toml::to_string(&file).map_err(|error| {
@@ -188,7 +187,7 @@ mod tests {
     #[test]
     fn a_policy_is_read_back_bit_for_bit() {
         let settings = Settings::default();
-        let text = policy_to_toml("wall", &settings, &policy()).unwrap();
+        let text = policy_to_toml("wall", &settings, &Catalogue::linked_in(), &policy()).unwrap();
         let read = policy_from_toml(&SourceText::new("policy.toml", text), &settings, 64).unwrap();
         assert_eq!(read, policy());
     }
@@ -198,7 +197,10 @@ mod tests {
         let mut settings = Settings::default();
         let parameters = vec![("saturation".to_owned(), 0.4), ("hue_deg".to_owned(), 120.0)];
         settings.filters = vec![FilterSettings { name: "colour".to_owned(), parameters }];
-        let source = SourceText::new("policy.toml", policy_to_toml("wall", &settings, &policy()).unwrap());
+        let source = SourceText::new(
+            "policy.toml",
+            policy_to_toml("wall", &settings, &Catalogue::linked_in(), &policy()).unwrap(),
+        );
         let mut read = StoredPolicy::parse(&source).unwrap().filters;
         read[0].parameters.sort_by_key(|(name, _)| std::cmp::Reverse(name.clone()));
         assert_eq!(read, settings.filters);
@@ -214,7 +216,10 @@ mod tests {
     #[test]
     fn another_grid_or_other_actions_are_refused() {
         let mut settings = Settings::default();
-        let source = SourceText::new("policy.toml", policy_to_toml("wall", &settings, &policy()).unwrap());
+        let source = SourceText::new(
+            "policy.toml",
+            policy_to_toml("wall", &settings, &Catalogue::linked_in(), &policy()).unwrap(),
+        );
         settings.grid.rows = 4;
         assert!(policy_from_toml(&source, &settings, 125).unwrap_err().message.contains("a grid of 3x3"));
         settings.grid.rows = 3;
@@ -226,7 +231,7 @@ mod tests {
     #[test]
     fn damage_is_an_error_and_not_a_guess() {
         let settings = Settings::default();
-        let text = policy_to_toml("wall", &settings, &policy()).unwrap();
+        let text = policy_to_toml("wall", &settings, &Catalogue::linked_in(), &policy()).unwrap();
         for damaged in [text.replace("index = 5", "index = 64"), text.replace("-0.1,", "nan,"), text[..200].to_owned()]
         {
             assert!(policy_from_toml(&SourceText::new("policy.toml", damaged), &settings, 64).is_err());

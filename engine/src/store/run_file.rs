@@ -57,16 +57,27 @@ impl FilterEntry {
 
     /// Refuses another file of the same name than was used then.
     pub(super) fn check(&self, filters: &Catalogue) -> Result<()> {
-        let found = filters.find(&self.name)?;
+        let found = filters.find(&self.name).map_err(|mut error| {
+            if self.sha256.is_some() && error.code == "E-FILTER-SETTING" {
+                error.help = Some("the run used it from a folder; give that folder: --filter-dir DIR".to_owned());
+            }
+            error
+        })?;
         if found.sha256 == self.sha256 {
             return Ok(());
         }
-        let digest = |sha256: &Option<String>| sha256.as_ref().map_or("linked in".to_owned(), |sha256| format!("sha256:{sha256}"));
+        let digest = |sha256: &Option<String>| {
+            sha256.as_ref().map_or("linked in".to_owned(), |sha256| format!("sha256:{sha256}"))
+        };
         let message = format!(
             "filter '{}' is not the one that was used: then {}, now {}",
-            printable(&self.name), digest(&self.sha256), digest(&found.sha256)
+            printable(&self.name),
+            digest(&self.sha256),
+            digest(&found.sha256)
         );
-        Diagnostic::new(Kind::State, "E-RUN-FILTER", message).help("give the folder of that filter: --filter-dir DIR").into()
+        Diagnostic::new(Kind::State, "E-RUN-FILTER", message)
+            .help("give the folder of that filter: --filter-dir DIR")
+            .into()
     }
 
     pub(super) fn settings(&self) -> FilterSettings {

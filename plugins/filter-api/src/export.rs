@@ -7,9 +7,7 @@ use std::ffi::c_void;
 use std::os::raw::c_char;
 use std::panic::{catch_unwind, AssertUnwindSafe};
 
-use crate::abi::{
-    RawCreate, RawFrame, RawParameter, RawPlugin, RawText, ABI_VERSION, ERROR, MESSAGE_BYTES, OK, PANIC,
-};
+use crate::abi::{RawCreate, RawFrame, RawParameter, RawPlugin, RawText, ABI_VERSION, ERROR, MESSAGE_BYTES, OK, PANIC};
 use crate::{Filter, FilterError, Format, Frame, FrameMut, Parameter, Plugin};
 
 /// Makes a [`Plugin`] the one filter of a library: `filter_api::export!(PLUGIN);`, once for each library.
@@ -92,11 +90,7 @@ pub const fn parameters<const COUNT: usize>(parameters: &[Parameter]) -> [RawPar
 
 /// A plugin as C sees it.
 #[must_use]
-pub const fn plugin(
-    plugin: &Plugin,
-    parameters: *const RawParameter,
-    create: RawCreate,
-) -> RawPlugin {
+pub const fn plugin(plugin: &Plugin, parameters: *const RawParameter, create: RawCreate) -> RawPlugin {
     let descriptor = plugin.descriptor;
     let mut reads = 0;
     let mut index = 0;

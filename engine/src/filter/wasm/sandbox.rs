@@ -122,7 +122,8 @@ impl Sandbox {
 
     fn describe(&self) -> Result<Described> {
         let mut guest = self.start()?;
-        let plugin = guest.function::<(), u32>("engine_filter").map_err(|_| self.lacks("engine_filter", "() -> i32"))?;
+        let plugin =
+            guest.function::<(), u32>("engine_filter").map_err(|_| self.lacks("engine_filter", "() -> i32"))?;
         self.functions(&mut guest)?;
         let address = guest.call(&plugin, (), START_FUEL, "describing itself")?;
         describe(guest.memory.data(&guest.store), address).map_err(|fault| {
