@@ -16,7 +16,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("reward", &[]),
     ("robot", &["world", "sensors"]),
     ("experiment", &["world", "sensors", "filter", "state", "learner", "reward", "robot"]),
-    ("store", &["world", "state", "learner", "reward", "experiment"]),
+    ("store", &["world", "filter", "state", "learner", "reward", "experiment"]),
     ("report", &["world", "sensors", "experiment"]),
     ("reproduce", &["world", "learner", "reward", "robot", "experiment", "report"]),
 ];
@@ -100,7 +100,7 @@ fn unsafe_stands_where_libraries_are_loaded_and_kernels_are_picked() {
 
 #[test]
 fn sines_come_from_libm() {
-    let methods = [".sin(", ".cos(", ".tan(", ".exp(", ".ln(", ".powf(", ".atan2(", ".sin_cos(", ".acos(", ".log("];
+    let methods = [".sin(", ".cos(", ".tan(", ".exp(", ".ln(", ".powf(", ".atan2(", ".sin_cos(", ".acos(", ".log2(", ".log10("];
     for (room, path, text) in engine_sources() {
         if is_test(&path) || room == "commands" {
             continue;

@@ -35,9 +35,9 @@ impl RunFolder {
         &self.path
     }
 
-    /// Writes the policy of a seed that a failure ended; it stands in the folder of its seed even if there is only one.
-    pub(super) fn keep(&self, plan: &Plan, learned: &Learned) -> Result<PathBuf> {
-        let folder = self.path.join(learned.seed.to_string());
+    /// Writes the policy of a seed that a failure ended; of many seeds, each has its folder.
+    pub(super) fn keep(&self, plan: &Plan, learned: &Learned, many: bool) -> Result<PathBuf> {
+        let folder = if many { self.path.join(learned.seed.to_string()) } else { self.path.clone() };
         create(&folder)?;
         let path = folder.join("policy.toml");
         write_atomic(&path, policy_text(plan, learned)?.as_bytes())?;

@@ -86,7 +86,7 @@ fn learn_all(
         let started = Instant::now();
         let mut learned = learn(plan, seed, stop, &report)?;
         if let Some(fault) = learned.fault.take() {
-            let kept = folder.keep(plan, &learned)?;
+            let kept = folder.keep(plan, &learned, seeds.len() > 1)?;
             console.note(&format!("what was learned in {} steps is kept in {}", learned.steps, kept.display()));
             return Err(fault);
         }
