@@ -100,7 +100,8 @@ fn unsafe_stands_where_libraries_are_loaded_and_kernels_are_picked() {
 
 #[test]
 fn sines_come_from_libm() {
-    let methods = [".sin(", ".cos(", ".tan(", ".exp(", ".ln(", ".powf(", ".atan2(", ".sin_cos(", ".acos(", ".log2(", ".log10("];
+    let methods =
+        [".sin(", ".cos(", ".tan(", ".exp(", ".ln(", ".powf(", ".atan2(", ".sin_cos(", ".acos(", ".log2(", ".log10("];
     for (room, path, text) in engine_sources() {
         if is_test(&path) || room == "commands" {
             continue;

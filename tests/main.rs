@@ -17,6 +17,8 @@ mod combine;
 mod determinism;
 /// Every filter that ships keeps the contract.
 mod filters;
+/// A filter from the template: built, listed, checked, learned with.
+mod new_filter;
 /// Filters listed and photographs seen through them; what cannot be seen.
 mod photos;
 /// The paper's claims through the program, quickly; the map that a test leaves.

@@ -26,6 +26,8 @@ pub(crate) enum Command {
     Filter(FilterArguments),
     /// List the filters that scripts can use, or print the manual of one
     Plugins(PluginsArguments),
+    /// Write a new filter that builds, to change it into your own
+    New(NewArguments),
     /// Print the reference page of the script language
     Reference(ReferenceArguments),
     /// Serve one native filter to an engine that runs with --isolate; nothing for people
@@ -42,7 +44,7 @@ impl Command {
             Self::Reproduce(arguments) => arguments.json,
             Self::Filter(arguments) => arguments.json,
             Self::Plugins(arguments) => arguments.json,
-            Self::Reference(_) | Self::FilterWorker(_) => false,
+            Self::New(_) | Self::Reference(_) | Self::FilterWorker(_) => false,
         }
     }
 }
@@ -209,6 +211,11 @@ pub(crate) enum PluginsCommand {
         /// The filter's name, such as sobel
         name: String,
     },
+    /// Try whether a filter keeps the law of filters, over many frames and settings
+    Check {
+        /// The filter's name, such as sobel
+        name: String,
+    },
 }
 
 /// Where filters come from, besides those linked in.
@@ -227,6 +234,24 @@ pub(crate) struct FilterSources {
     /// Run each native filter in a process of its own, so that its crash or endless loop ends only itself
     #[arg(global = true, long)]
     pub(crate) isolate: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct NewArguments {
+    #[command(subcommand)]
+    pub(crate) what: NewCommand,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum NewCommand {
+    /// Write a filter as a crate of its own, with the contract beside it
+    Filter {
+        /// The filter's name: lower case letters, digits and _
+        name: String,
+        /// The folder to write into [default: the name]
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
 }
 
 #[derive(Debug, Args)]

@@ -36,6 +36,7 @@ fn run(command: &Command, console: &mut Console) -> Result<u8, ConsoleError> {
         Command::Filter(arguments) => commands::filter::run(arguments, console),
         Command::Plugins(arguments) => commands::plugins::run(arguments, console),
         Command::FilterWorker(arguments) => commands::sources::work(arguments),
+        Command::New(arguments) => commands::new::run(arguments, console),
         Command::Reference(arguments) => commands::reference::run(arguments, console),
     }
 }

@@ -85,6 +85,13 @@ impl Bench {
         self.command(arguments).output().unwrap()
     }
 
+    /// What it printed on standard output, once it is seen to exit with 0.
+    pub(crate) fn success(&self, arguments: &[&str]) -> String {
+        let output = self.engine(arguments);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    }
+
     /// Exit status and standard error, for a snapshot.
     pub(crate) fn failure(&self, arguments: &[&str]) -> String {
         told(&self.engine(arguments))

@@ -4,6 +4,7 @@ pub(crate) mod bench;
 mod combine;
 pub(crate) mod filter;
 mod folder;
+pub(crate) mod new;
 pub(crate) mod plugins;
 pub(crate) mod reference;
 pub(crate) mod reproduce;

@@ -1,9 +1,10 @@
 //! `engine plugins`: the filters that scripts can use, from what each says of itself.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use engine::diagnostic::{Diagnostic, Kind, Result, printable};
-use engine::filter::{Catalogue, Entry, Form};
+use engine::filter::{Catalogue, Entry, Form, conformance};
 use filter_api::{Descriptor, Format, Parameter, ParameterKind};
 use serde_json::{Value, json};
 
@@ -14,7 +15,8 @@ use crate::console::{Console, ConsoleError};
 pub(crate) fn run(arguments: &PluginsArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
     let filters = catalogue(&arguments.filters)?;
     match &arguments.command {
-        Some(PluginsCommand::Show { name }) => show(&filters, name, console)?,
+        Some(PluginsCommand::Show { name }) => show(find(&filters, name)?.as_ref(), console)?,
+        Some(PluginsCommand::Check { name }) => check(find(&filters, name)?.as_ref(), console)?,
         None => list(&filters, console)?,
     }
     Ok(0)
@@ -25,7 +27,7 @@ struct Listed<'a> {
     name: &'a str,
     form: Form,
     path: Option<&'a Path>,
-    entry: Result<std::sync::Arc<Entry>>,
+    entry: Result<Arc<Entry>>,
 }
 
 fn list(filters: &Catalogue, console: &mut Console) -> std::result::Result<(), ConsoleError> {
@@ -66,14 +68,24 @@ fn row(listed: &Listed) -> [String; 6] {
     }
 }
 
-fn show(filters: &Catalogue, name: &str, console: &mut Console) -> std::result::Result<(), ConsoleError> {
-    let entry = filters.find(name).map_err(|error| match error.code {
+fn find(filters: &Catalogue, name: &str) -> Result<Arc<Entry>> {
+    filters.find(name).map_err(|error| match error.code {
         // A name on the command line is the command line's mistake.
         "E-FILTER-SETTING" => Box::new(Diagnostic { kind: Kind::Usage, code: "E-PLUGIN", ..*error }),
         _ => error,
-    })?;
+    })
+}
+
+fn check(entry: &Entry, console: &mut Console) -> std::result::Result<(), ConsoleError> {
+    let frames = conformance(entry)?;
+    let name = entry.descriptor.name;
+    console.json(&json!({ "name": name, "form": entry.form.name(), "frames": frames, "keeps_the_law": true }))?;
+    console.line(&format!("filter '{name}' ({}) keeps the law of filters: {frames} frames", entry.form.name()))
+}
+
+fn show(entry: &Entry, console: &mut Console) -> std::result::Result<(), ConsoleError> {
     let filter = entry.descriptor;
-    console.json(&manual(&entry))?;
+    console.json(&manual(entry))?;
     console.line(&format!("{} {}", filter.name, filter.version))?;
     console.line(filter.purpose)?;
     console.line("")?;

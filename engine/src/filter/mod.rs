@@ -5,6 +5,7 @@
 
 mod catalogue;
 mod chain;
+mod conformance;
 mod described;
 mod library;
 mod native;
@@ -17,5 +18,6 @@ mod worker;
 
 pub use catalogue::{Catalogue, Entry, Form, LINKED_IN, Sources};
 pub use chain::{Chain, ChainError};
+pub use conformance::conformance;
 pub use trust::Trust;
 pub use worker::serve;

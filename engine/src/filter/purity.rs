@@ -3,8 +3,9 @@
 
 use filter_api::{Format, Frame, FrameMut};
 
-use super::catalogue::{Entry, Form};
-use crate::diagnostic::{Diagnostic, Kind, Result};
+use super::catalogue::Entry;
+use super::conformance::broken;
+use crate::diagnostic::Result;
 
 const WIDTH_PX: usize = 24;
 const HEIGHT_PX: usize = 16;
@@ -16,32 +17,24 @@ const ORDER: [u32; 5] = [0, 1, 2, 1, 0];
 /// # Errors
 /// If it fails on one of them, answers differently when a frame comes again, or writes a mask that is none.
 pub(super) fn check(entry: &Entry, values: &[f64], reads: Format) -> Result<()> {
-    let descriptor = entry.descriptor;
-    let wrong = |what: &str| -> Result<()> {
-        let code = if entry.form == Form::Wasm { "E-WASM-STATE" } else { "E-NATIVE-STATE" };
-        let message = format!("filter '{}' breaks the law of filters: {what}", descriptor.name);
-        let help = "tell its author: the same frame and parameters must give the same output";
-        Diagnostic::new(Kind::Limit, code, message).help(help).into()
-    };
+    let writes = entry.descriptor.writes;
     let mut first: [Option<Vec<u8>>; 3] = [None, None, None];
     for _ in 0..2 {
         let mut running = (entry.create)(values)?;
         for frame in ORDER {
-            let pixels = noise(frame, reads);
+            let pixels = noise(frame, reads, WIDTH_PX * HEIGHT_PX);
             // What stood in the output before must not matter either.
-            let mut out = vec![frame as u8; WIDTH_PX * HEIGHT_PX * descriptor.writes.channels()];
-            let (Ok(input), Ok(output)) = (
-                Frame::new(WIDTH_PX, HEIGHT_PX, reads, &pixels),
-                FrameMut::new(WIDTH_PX, HEIGHT_PX, descriptor.writes, &mut out),
-            ) else {
-                return Ok(());
+            let mut out = vec![frame as u8; WIDTH_PX * HEIGHT_PX * writes.channels()];
+            let input = Frame::new(WIDTH_PX, HEIGHT_PX, reads, &pixels);
+            let (Ok(input), Ok(output)) = (input, FrameMut::new(WIDTH_PX, HEIGHT_PX, writes, &mut out)) else {
+                return broken(entry, "the sizes of its frames are impossible");
             };
             running.process(input, output)?;
-            if descriptor.writes == Format::Mask && out.iter().any(|byte| !matches!(byte, 0 | 255)) {
-                return wrong("its mask holds bytes besides 0 and 255");
+            if writes == Format::Mask && out.iter().any(|byte| !matches!(byte, 0 | 255)) {
+                return broken(entry, "its mask holds bytes besides 0 and 255");
             }
             match &first[frame as usize] {
-                Some(before) if *before != out => return wrong("it answered one frame in two ways"),
+                Some(before) if *before != out => return broken(entry, "it answered one frame in two ways"),
                 _ => first[frame as usize] = Some(out),
             }
         }
@@ -50,9 +43,12 @@ pub(super) fn check(entry: &Entry, values: &[f64], reads: Format) -> Result<()> 
 }
 
 /// A frame of noise, the same on every machine: the multiplication hash of Knuth, volume 3, section 6.4.
-fn noise(frame: u32, format: Format) -> Vec<u8> {
-    let length = WIDTH_PX * HEIGHT_PX * format.channels();
-    let byte = |index: usize| ((index as u32 + 1).wrapping_mul(2_654_435_761).wrapping_add(frame << 24) >> 24) as u8;
-    let bytes = (0..length).map(byte);
+pub(super) fn noise(frame: u32, format: Format, pixels: usize) -> Vec<u8> {
+    let seed = (frame + 1).wrapping_mul(0x9e37_79b9);
+    let byte = |index: usize| {
+        let hash = (index as u32 ^ seed).wrapping_mul(2_654_435_761);
+        ((hash ^ (hash >> 15)).wrapping_mul(2_246_822_519) >> 24) as u8
+    };
+    let bytes = (0..pixels * format.channels()).map(byte);
     if format == Format::Mask { bytes.map(|byte| if byte < 128 { 0 } else { 255 }).collect() } else { bytes.collect() }
 }
