@@ -5,7 +5,7 @@ use std::cell::Cell;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use engine::experiment::{Overrides, Plan, learn};
+use engine::experiment::{Ledger, Overrides, Plan, learn_into};
 use engine::reward::Behaviour;
 
 use crate::support::root;
@@ -43,7 +43,8 @@ fn allocations(plan: &Plan, steps: u64) -> u64 {
     let mut plan = plan.clone();
     plan.settings.run.steps = steps;
     let before = ALLOCATIONS.get();
-    let learned = learn(&plan, 7, &AtomicBool::new(false), &|_| ()).unwrap();
+    let mut ledger = Ledger::new(&plan, steps);
+    let learned = learn_into(&plan, 7, &AtomicBool::new(false), &|_| (), &mut ledger).unwrap();
     // The policy at the end has a row for each state that was seen; the loop itself has none.
     ALLOCATIONS.get() - before - learned.policy.rows().iter().flatten().count() as u64
 }

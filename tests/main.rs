@@ -21,6 +21,8 @@ mod filters;
 mod new_filter;
 /// Filters listed and photographs seen through them; what cannot be seen.
 mod photos;
+/// Every step kept, and brought back by its actions.
+mod ledger;
 /// The paper's claims through the program, quickly; the map that a test leaves.
 mod reproduce;
 /// What a run leaves, and that it is well-formed.

@@ -8,6 +8,7 @@ use crate::sensors::observation::{Image, Observation, Scan};
 use crate::state::Grid;
 
 use super::{Eyes, Plan};
+use filter_api::Descriptor;
 
 /// What one step led to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -179,6 +180,18 @@ impl<R: Robot> Cycle<R> {
         self.judge.fired()
     }
 
+    /// The beam behind the last rule that fired in the last step, if it read the laser.
+    #[must_use]
+    pub fn fired_beam(&self) -> Option<usize> {
+        self.judge.fired_beam()
+    }
+
+    /// What judged the last step.
+    #[must_use]
+    pub fn judge(&self) -> &Judge {
+        &self.judge
+    }
+
     /// What the script was told in the last step.
     #[must_use]
     pub fn facts(&self) -> &Facts {
@@ -201,6 +214,11 @@ impl<R: Robot> Cycle<R> {
     #[must_use]
     pub fn mask(&self) -> &[u8] {
         self.eyes[0].chain.mask()
+    }
+
+    /// What each of the script's own filters made of the last image, in order.
+    pub fn stages(&self) -> impl Iterator<Item = (&'static Descriptor, &[u8])> {
+        self.eyes[0].chain.stages()
     }
 
     /// The script's own grid, with its last counts.

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::digest::StateHash;
 use super::trail::{Recorder, Trail};
-use super::{Cycle, Plan, Tally, WINDOW_STEPS};
+use super::{Cycle, Ledger, Plan, Tally, WINDOW_STEPS};
 use crate::diagnostic::{Diagnostic, Result};
 use crate::learner::{Learner, Policy, Transition};
 use crate::random::{Random, Stream};
@@ -56,6 +56,20 @@ impl Learned {
 /// # Errors
 /// If it fails before the first step is done.
 pub fn learn(plan: &Plan, seed: u64, stop: &AtomicBool, report: &(dyn Fn(Progress) + Sync)) -> Result<Learned> {
+    learn_into(plan, seed, stop, report, &mut Ledger::off())
+}
+
+/// The same, with every step kept in a ledger.
+///
+/// # Errors
+/// As [`learn`].
+pub fn learn_into(
+    plan: &Plan,
+    seed: u64,
+    stop: &AtomicBool,
+    report: &(dyn Fn(Progress) + Sync),
+    ledger: &mut Ledger,
+) -> Result<Learned> {
     let settings = &plan.settings;
     let robot = SimulatedRobot::new(&plan.layout, settings, seed)?;
     let mut cycle = Cycle::new(plan, robot)?;
@@ -70,6 +84,7 @@ pub fn learn(plan: &Plan, seed: u64, stop: &AtomicBool, report: &(dyn Fn(Progres
     let (mut steps, mut fault) = (0, None);
     while steps < settings.run.steps {
         let action = learner.choose(cycle.state());
+        let explored = learner.table().best(cycle.state()).0 != action;
         let step = match cycle.step(action) {
             Ok(step) => step,
             Err(error) if steps == 0 => return Err(error),
@@ -86,6 +101,7 @@ pub fn learn(plan: &Plan, seed: u64, stop: &AtomicBool, report: &(dyn Fn(Progres
             terminal: step.recover && settings.learner.failure_is_terminal,
         });
         steps += 1;
+        ledger.add(&cycle, &step, explored);
         hash.step(&step, cycle.robot().world().body().pose);
         early.follow(cycle.robot().world(), step.failed());
         if step.recover {

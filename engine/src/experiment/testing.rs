@@ -6,7 +6,7 @@ use super::digest::StateHash;
 use super::summary::TestFigures;
 use super::trail::{Recorder, Trail};
 use super::truth::Truth;
-use super::{CombinationFigures, Cycle, Disagreements, Eyes, Member, Plan, Step, Tally, WINDOW_STEPS};
+use super::{CombinationFigures, Cycle, Disagreements, Eyes, Ledger, Member, Plan, Step, Tally, WINDOW_STEPS};
 use crate::diagnostic::Result;
 use crate::learner::{Combined, Policy};
 use crate::random::{Random, Stream};
@@ -19,7 +19,7 @@ const TRAIL_STEPS: u64 = 2 * WINDOW_STEPS;
 /// The step after which one frame is kept for drawing.
 const SNAPSHOT_STEP: u64 = 60;
 /// Added to the seed, so that the noise of the test is not the noise of learning again.
-const TEST_SEED_OFFSET: u64 = 0x5eed_0000_0000_0000;
+pub(super) const TEST_SEED_OFFSET: u64 = 0x5eed_0000_0000_0000;
 
 /// One frame with what the filter and the grid made of it.
 #[derive(Debug, Clone)]
@@ -82,6 +82,18 @@ pub fn test_and_watch(plan: &Plan, policy: &Policy, seed: u64, stop: &AtomicBool
     let mut softmax = policy.softmax(&plan.settings.learner);
     let mut random = Random::new(seed, Stream::Test);
     drive(plan, Vec::new(), seed, stop, |states| policy.choose(states[0], &mut softmax, &mut random), watch)
+}
+
+/// The same test, with every step kept in a ledger.
+///
+/// # Errors
+/// As [`test()`].
+pub fn test_into(plan: &Plan, policy: &Policy, seed: u64, stop: &AtomicBool, ledger: &mut Ledger) -> Result<TestRun> {
+    let mut keep = |cycle: &Cycle<SimulatedRobot>, step: &Step| {
+        let explored = policy.best(step.state).is_none_or(|(best, _)| best != step.action);
+        ledger.add(cycle, step, explored);
+    };
+    test_and_watch(plan, policy, seed, stop, &mut keep)
 }
 
 /// Tests several policies as one, as [`test_and_watch`] does; the plan's script judges.

@@ -2,9 +2,11 @@
 
 use super::compile::{Compiler, Needs};
 use super::explain;
+use super::expression::Number;
 use super::fact_table::GROUPS;
 use super::judge::Judge;
-use super::rule::{Rule, RuleText};
+use super::readings::{self, Part};
+use super::rule::{Clause, Rule, RuleText};
 use super::setup::{self, Log, Places};
 use super::source::{self, Code};
 use super::{names, reach, rehearsal, running, sandbox, syntax};
@@ -36,6 +38,8 @@ pub(super) struct Loaded {
     pub needs: Needs,
     /// Where the name of `fn reward` stands, if there is one.
     pub reward: Option<Range<usize>>,
+    /// What `fn reward` reads.
+    pub reward_parts: Vec<Part>,
     /// Where the name of `fn calibrate` stands, if there is one.
     pub calibrate: Option<Range<usize>>,
 }
@@ -78,7 +82,8 @@ impl Behaviour {
             let text = code.source.text[code.source.line_range(line)].trim().to_owned();
             RuleText { name: "reward".to_owned(), line, text }
         }));
-        let loaded = Arc::new(Loaded { code, engine, ast, constants, rules, needs, reward, calibrate });
+        let reward_parts = reward.as_ref().map_or_else(Vec::new, |span| readings::function_parts(&code, span));
+        let loaded = Arc::new(Loaded { code, engine, ast, constants, rules, needs, reward, reward_parts, calibrate });
         let behaviour = Self { name: name.to_owned(), settings, places, rules: texts, loaded };
         behaviour.check()?;
         Ok(behaviour)
@@ -130,6 +135,15 @@ impl Behaviour {
     #[must_use]
     pub fn rules(&self) -> &[RuleText] {
         &self.rules
+    }
+
+    /// What a rule adds whenever it fires; nothing if that depends on the step, as with `fn reward`.
+    #[must_use]
+    pub fn fixed_value(&self, rule: usize) -> Option<f64> {
+        match self.loaded.rules.get(rule)?.value {
+            Clause::Native(Number::Constant(value)) => Some(value),
+            _ => None,
+        }
     }
 
     /// A judge with fresh counters, for one seed; `period_s` is the time between two steps, in seconds.

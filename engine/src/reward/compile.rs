@@ -151,7 +151,7 @@ impl Compiler<'_> {
         }
     }
 
-    fn sector(&mut self, call: &FnCallExpr) -> Option<(usize, usize)> {
+    pub(super) fn sector(&mut self, call: &FnCallExpr) -> Option<(usize, usize)> {
         if call.name != "sector" || call.args.len() != 2 {
             return None;
         }
@@ -171,14 +171,21 @@ impl Compiler<'_> {
                     Some(Typed::Whole(Number::CountBelow(from, to, Box::new(limit))))
                 }
                 "excess" => {
-                    let chain = Chain::of(&call.args[0])?;
-                    let key = Self::calibrated_key(&chain)?;
-                    let expected = self.calibrated(key, Some(to - from + 1), chain.position);
-                    let Number::Calibrated(slot) = expected else { return None };
+                    let slot = self.expected(from, to, call)?;
                     Some(Typed::Number(Number::Excess(from, to, slot)))
                 }
                 _ => None,
             },
+            _ => None,
+        }
+    }
+
+    /// Where `excess(calibrated)` finds its expected ranges.
+    pub(super) fn expected(&mut self, from: usize, to: usize, call: &FnCallExpr) -> Option<usize> {
+        let chain = Chain::of(call.args.first()?)?;
+        let key = Self::calibrated_key(&chain)?;
+        match self.calibrated(key, Some(to - from + 1), chain.position) {
+            Number::Calibrated(slot) => Some(slot),
             _ => None,
         }
     }
@@ -190,7 +197,7 @@ impl Compiler<'_> {
         }
     }
 
-    fn beam(&mut self, expr: &Expr) -> Option<usize> {
+    pub(super) fn beam(&mut self, expr: &Expr) -> Option<usize> {
         let beam = self.constant_whole(expr)?;
         self.needs.beams.push((beam, expr.start_position()));
         usize::try_from(beam).ok()
@@ -266,7 +273,7 @@ impl Compiler<'_> {
     }
 
     /// A number; or the laser or a sector, which stand for their nearest range.
-    fn range(&mut self, expr: &Expr) -> Option<Number> {
+    pub(super) fn range(&mut self, expr: &Expr) -> Option<Number> {
         let chain = Chain::of(expr);
         match chain.as_ref().and_then(Chain::group) {
             Some(("laser", [])) => Some(Number::Fact(laser_nearest()?, Reach::Laser)),

@@ -5,6 +5,7 @@ use super::explain;
 use super::expression::{Inputs, Slot};
 use super::facts::Facts;
 use super::judge::Verdict;
+use super::readings::Part;
 use super::rule::{Clause, Rule, ScriptClause};
 use super::running;
 use super::views::{All, number, view};
@@ -25,8 +26,13 @@ pub(super) struct Present {
 }
 
 impl Present {
-    fn inputs(&self) -> Inputs<'_> {
+    pub(super) fn inputs(&self) -> Inputs<'_> {
         Inputs { facts: &self.facts, slots: &self.slots }
+    }
+
+    /// What a rule, or after the last one `fn reward`, reads.
+    pub(super) fn parts(&self, rule: usize) -> &[Part] {
+        self.loaded.rules.get(rule).map_or(&self.loaded.reward_parts, |rule| &rule.parts)
     }
 
     pub(super) fn condition(&self, rule: &Rule) -> Result<bool> {

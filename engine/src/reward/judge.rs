@@ -5,6 +5,7 @@ use super::evaluate::Present;
 use super::explain;
 use super::expression::Slot;
 use super::facts::Facts;
+use super::readings::{self, Evidence};
 use super::views::{number, wrong_length};
 use crate::diagnostic::{Diagnostic, Kind, Result};
 use rhai::{Dynamic, Map};
@@ -136,6 +137,25 @@ impl Judge {
     #[must_use]
     pub fn fired(&self) -> &[Option<f64>] {
         &self.fired
+    }
+
+    /// The beam behind the last rule that fired in the last step, if it read the laser. Allocates nothing.
+    #[must_use]
+    pub fn fired_beam(&self) -> Option<usize> {
+        let last = self.fired.iter().rposition(Option::is_some)?;
+        readings::beam(self.present.parts(last), self.present.inputs())
+    }
+
+    /// What the condition of a rule reads in the present facts, part by part.
+    #[must_use]
+    pub fn evidence(&self, rule: usize) -> Vec<Evidence> {
+        self.present.parts(rule).iter().map(|part| part.evidence(self.present.inputs())).collect()
+    }
+
+    /// For how many steps a rule's condition has held since it last fired, and how many it needs.
+    #[must_use]
+    pub fn held(&self, rule: usize) -> (u32, u32) {
+        (self.held.get(rule).copied().unwrap_or(0), self.needed.get(rule).copied().unwrap_or(1))
     }
 
     /// The robot has been brought back: every persistence starts again.

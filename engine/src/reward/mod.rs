@@ -16,6 +16,7 @@ mod functions;
 mod judge;
 mod names;
 mod reach;
+mod readings;
 mod reference;
 mod rehearsal;
 mod rule;
@@ -31,6 +32,7 @@ pub use fact_table::{CALLS, FACTS, Fact, FactCall, GROUPS, Getter, Reach, SECTOR
 pub use facts::Facts;
 pub use functions::{FUNCTIONS, Function};
 pub use judge::{Judge, Verdict};
+pub use readings::{Evidence, FactRead};
 pub use reference::{definitions, reference};
 pub use rule::RuleText;
 pub use setup::{SETUP, SetupCall};

@@ -3,6 +3,7 @@
 use super::compile::{Compiler, Typed};
 use super::explain;
 use super::expression::{Flag, Number};
+use super::readings::{self, Part};
 use super::source::Code;
 use super::syntax::{TimeUnit, WrittenRule};
 use crate::diagnostic::{Diagnostic, Kind, Result, printable};
@@ -69,6 +70,8 @@ pub(super) struct Rule {
     pub value: Clause<Number>,
     pub value_span: Range<usize>,
     pub recover: bool,
+    /// What the condition reads.
+    pub parts: Vec<Part>,
 }
 
 impl Rule {
@@ -119,7 +122,8 @@ impl Rule {
         }
         let persistence = persistence(code, written, compiler)?;
         let text = RuleText { name: written.name.to_owned(), line, text };
-        Ok(Self { text, condition, condition_span, persistence, value, value_span, recover: written.recover })
+        let (recover, parts) = (written.recover, readings::parts(code, written.condition, compiler));
+        Ok(Self { text, condition, condition_span, persistence, value, value_span, recover, parts })
     }
 
     /// `rule "too close"`, safe for a terminal.
@@ -189,7 +193,7 @@ fn span(code: &Code, expr: &Expr) -> Range<usize> {
 }
 
 // An operator's own position is the operator's; what is underlined begins with its left side.
-fn first(expr: &Expr) -> Position {
+pub(super) fn first(expr: &Expr) -> Position {
     match expr {
         Expr::FnCall(call, _) if call.is_operator_call() && call.args.len() == 2 => first(&call.args[0]),
         Expr::And(parts, _) | Expr::Or(parts, _) => parts.first().map_or(Position::NONE, first),

@@ -1,0 +1,128 @@
+//! A recorded run driven again: from the seed and the recorded actions comes back all that was seen, step by step.
+//!
+//! ```text
+//! let mut playback = Playback::new(&plan, seed, Phase::Learning, &ledger)?;
+//! playback.seek(1200)?;                       // as the robot stood when it chose the action of step 1200
+//! let before = Snapshot::of(playback.cycle()); //   image, mask, grid, state; cycle().stages(): each filter's picture
+//! playback.advance()?;                        // step 1200 itself, before any recovery
+//! playback.cycle();                           // ... scan (observation), facts, fired, evidence, truth (robot().world())
+//! playback.difference();                      // None: the step is its record, bit for bit
+//! ```
+//!
+//! A step takes as long as one of learning, about 14 microseconds; going back plays from the beginning.
+
+use super::testing::TEST_SEED_OFFSET;
+use super::{Cycle, Ledger, Plan, Step};
+use crate::diagnostic::{Diagnostic, Kind, Result};
+use crate::robot::SimulatedRobot;
+
+/// What a ledger holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Phase {
+    /// Steps of learning.
+    Learning,
+    /// Steps of the frozen policy's test.
+    Test,
+}
+
+impl Phase {
+    /// The seed of world and sensors in this phase of a run.
+    #[must_use]
+    pub const fn world_seed(self, seed: u64) -> u64 {
+        match self {
+            Self::Learning => seed,
+            Self::Test => seed.wrapping_add(TEST_SEED_OFFSET),
+        }
+    }
+}
+
+/// A recorded phase, driven again.
+pub struct Playback<'a> {
+    plan: &'a Plan,
+    ledger: &'a Ledger,
+    world_seed: u64,
+    cycle: Cycle<SimulatedRobot>,
+    /// The record of the last step as it came out now.
+    played: Ledger,
+    done: usize,
+    must_recover: bool,
+}
+
+impl<'a> Playback<'a> {
+    /// Stands before the first step of a recorded phase.
+    ///
+    /// # Errors
+    /// If the plan does not work.
+    pub fn new(plan: &'a Plan, seed: u64, phase: Phase, ledger: &'a Ledger) -> Result<Self> {
+        let world_seed = phase.world_seed(seed);
+        let cycle = cycle(plan, world_seed)?;
+        Ok(Self { plan, ledger, world_seed, cycle, played: Ledger::new(plan, 1), done: 0, must_recover: false })
+    }
+
+    /// How many steps have been played.
+    #[must_use]
+    pub fn done(&self) -> usize {
+        self.done
+    }
+
+    /// The robot with its sensors, filters, grid and script, as they are now.
+    #[must_use]
+    pub fn cycle(&self) -> &Cycle<SimulatedRobot> {
+        &self.cycle
+    }
+
+    /// Goes to where the action of a step was chosen: after the step before it, and its recovery.
+    ///
+    /// # Errors
+    /// If a sensor, a filter or the script fails, or there are fewer steps.
+    pub fn seek(&mut self, step: usize) -> Result<()> {
+        if step < self.done {
+            self.cycle = cycle(self.plan, self.world_seed)?;
+            (self.done, self.must_recover) = (0, false);
+        }
+        while self.done < step {
+            if self.advance()?.is_none() {
+                let message = format!("the log has {} steps, no step {step}", self.ledger.len());
+                let last = self.ledger.len().saturating_sub(1);
+                let help = format!("steps are counted from 0 to {last}");
+                return Diagnostic::new(Kind::Usage, "E-LOG-STEP", message).help(help).into();
+            }
+        }
+        self.recover_if_due()
+    }
+
+    /// Plays one more step, or none after the last.
+    ///
+    /// # Errors
+    /// If a sensor, a filter or the script fails, or the recorded action is not one of the plan's.
+    pub fn advance(&mut self) -> Result<Option<Step>> {
+        let Some(record) = self.ledger.record(self.done) else { return Ok(None) };
+        self.recover_if_due()?;
+        let action = usize::from(record.action);
+        if action >= self.plan.settings.actions.len() {
+            let message = format!("step {} of the log has action {action}, which the run does not have", self.done);
+            return Diagnostic::new(Kind::State, "E-LOG-FILE", message).help("run the behaviour again").into();
+        }
+        let step = self.cycle.step(action)?;
+        self.played.clear();
+        self.played.add(&self.cycle, &step, record.explored);
+        self.done += 1;
+        self.must_recover = step.recover;
+        Ok(Some(step))
+    }
+
+    /// The first field in which the last step differs from its record.
+    #[must_use]
+    pub fn difference(&self) -> Option<&'static str> {
+        let last = self.done.checked_sub(1)?;
+        self.ledger.field_that_differs(last, &self.played, 0)
+    }
+
+    fn recover_if_due(&mut self) -> Result<()> {
+        if std::mem::take(&mut self.must_recover) { self.cycle.recover() } else { Ok(()) }
+    }
+}
+
+fn cycle(plan: &Plan, world_seed: u64) -> Result<Cycle<SimulatedRobot>> {
+    Cycle::new(plan, SimulatedRobot::new(&plan.layout, &plan.settings, world_seed)?)
+}

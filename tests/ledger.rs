@@ -1,0 +1,135 @@
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use engine::experiment::{Ledger, Overrides, Phase, Plan, Playback, Snapshot, learn, learn_into, test_into};
+use engine::reward::Behaviour;
+
+use crate::support::root;
+
+/// A shipped behaviour with fewer steps.
+fn plan(script: &str, steps: u64) -> Plan {
+    let behaviour = Behaviour::load(&root().join(format!("scripts/{script}.rhai"))).unwrap();
+    let overrides = Overrides { steps: Some(steps), test_steps: Some(400), ..Overrides::default() };
+    Plan::new(Arc::new(behaviour), &overrides).unwrap()
+}
+
+fn recorded(plan: &Plan, seed: u64) -> Ledger {
+    let mut ledger = Ledger::new(plan, plan.settings.run.steps);
+    learn_into(plan, seed, &AtomicBool::new(false), &|_| (), &mut ledger).unwrap();
+    ledger
+}
+
+#[test]
+fn keeping_the_ledger_changes_nothing_that_is_learned() {
+    let plan = plan("wall", 800);
+    let stop = AtomicBool::new(false);
+    let without = learn(&plan, 3, &stop, &|_| ()).unwrap();
+    let with = learn_into(&plan, 3, &stop, &|_| (), &mut Ledger::new(&plan, 800)).unwrap();
+    assert_eq!(without.state_hash, with.state_hash);
+}
+
+#[test]
+fn a_step_takes_80_bytes_and_88_with_a_reward_function() {
+    assert_eq!(recorded(&plan("wall", 400), 1).bytes().len(), 80 * 400);
+    assert_eq!(recorded(&plan("corridor-speed", 400), 1).bytes().len(), 88 * 400);
+}
+
+#[test]
+fn the_rules_of_a_step_add_up_to_its_reward() {
+    for script in ["wall", "corridor-speed", "platform", "object"] {
+        let ledger = recorded(&plan(script, 800), 1);
+        let mut fired = 0;
+        for (step, record) in ledger.records().enumerate() {
+            let values: Vec<f64> = ledger.fired(step).map(|(_, value)| value).collect();
+            assert_eq!(values.iter().sum::<f64>(), record.reward, "{script}, step {step}");
+            fired += values.len();
+        }
+        assert!(fired > 5, "{script}");
+    }
+}
+
+#[test]
+fn a_rule_that_reads_the_laser_names_the_beam_behind_it() {
+    let plan = plan("wall", 1200);
+    let ledger = recorded(&plan, 1);
+    let mut named = [0, 0];
+    for (step, record) in ledger.records().enumerate() {
+        match ledger.fired(step).last() {
+            // "too close" asks for the nearest beam, "contact" for none, "wall lost" for beam 0.
+            Some((0, _)) => {
+                assert_eq!(record.beam, Some(record.nearest_beam));
+                assert!(record.nearest_m <= 0.25 && record.recover);
+                named[0] += 1;
+            }
+            Some((2, _)) => {
+                assert_eq!(record.beam, Some(0));
+                named[1] += 1;
+            }
+            _ => assert_eq!(record.beam, None),
+        }
+    }
+    assert!(named[0] > 0 && named[1] > 0, "{named:?}");
+}
+
+#[test]
+fn recorded_actions_bring_every_step_back() {
+    for script in ["wall", "corridor-speed", "platform", "object", "avoid"] {
+        let plan = plan(script, 800);
+        let ledger = recorded(&plan, 5);
+        let mut playback = Playback::new(&plan, 5, Phase::Learning, &ledger).unwrap();
+        while let Some(step) = playback.advance().unwrap() {
+            assert_eq!(playback.difference(), None, "{script}, step {}", step.index);
+        }
+        assert_eq!(playback.done(), 800);
+    }
+}
+
+#[test]
+fn another_seed_does_not_fit_a_ledger() {
+    let plan = plan("wall", 400);
+    let ledger = recorded(&plan, 5);
+    let mut playback = Playback::new(&plan, 6, Phase::Learning, &ledger).unwrap();
+    playback.advance().unwrap();
+    assert_eq!(playback.difference(), Some("x"));
+}
+
+#[test]
+fn a_test_is_played_back_as_learning_is() {
+    let plan = plan("object", 800);
+    let stop = AtomicBool::new(false);
+    let learned = learn(&plan, 2, &stop, &|_| ()).unwrap();
+    let mut ledger = Ledger::new(&plan, 400);
+    test_into(&plan, &learned.policy, 2, &stop, &mut ledger).unwrap();
+    assert!(ledger.records().all(|record| record.prey.is_some()));
+    let mut playback = Playback::new(&plan, 2, Phase::Test, &ledger).unwrap();
+    while playback.advance().unwrap().is_some() {
+        assert_eq!(playback.difference(), None);
+    }
+}
+
+#[test]
+fn going_to_a_step_forwards_or_back_shows_the_state_in_which_its_action_was_chosen() {
+    let plan = plan("wall", 400);
+    let ledger = recorded(&plan, 1);
+    let after_a_failure = ledger.records().position(|record| record.recover).unwrap() + 1;
+    let mut playback = Playback::new(&plan, 1, Phase::Learning, &ledger).unwrap();
+    let mut first = None;
+    for step in [after_a_failure, 300, after_a_failure, 0] {
+        playback.seek(step).unwrap();
+        let snapshot = Snapshot::of(playback.cycle());
+        assert_eq!(snapshot.state as u32, ledger.record(step).unwrap().state);
+        if step == after_a_failure {
+            let image = first.get_or_insert_with(|| snapshot.image.clone());
+            assert_eq!(*image, snapshot.image);
+        }
+    }
+    assert_eq!(playback.seek(401).unwrap_err().code, "E-LOG-STEP");
+}
+
+#[test]
+fn a_ledger_says_where_two_runs_part() {
+    let plan = plan("wall", 400);
+    let (one, two) = (recorded(&plan, 1), recorded(&plan, 2));
+    assert_eq!(one.first_difference(&one.clone()), None);
+    assert_eq!(one.first_difference(&two), Some((0, "x")));
+}
