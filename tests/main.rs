@@ -17,12 +17,12 @@ mod combine;
 mod determinism;
 /// Every filter that ships keeps the contract.
 mod filters;
+/// Every step kept, and brought back by its actions.
+mod ledger;
 /// A filter from the template: built, listed, checked, learned with.
 mod new_filter;
 /// Filters listed and photographs seen through them; what cannot be seen.
 mod photos;
-/// Every step kept, and brought back by its actions.
-mod ledger;
 /// The paper's claims through the program, quickly; the map that a test leaves.
 mod reproduce;
 /// What a run leaves, and that it is well-formed.

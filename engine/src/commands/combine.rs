@@ -5,11 +5,14 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use engine::diagnostic::{Diagnostic, Kind, Result};
-use engine::experiment::{CombinationFigures, CombinedRun, Member, Plan, Spread, Summary, in_parallel, test_combined};
+use engine::experiment::{
+    CombinationFigures, CombinedRun, Cycle, Member, Plan, Spread, Step, Summary, in_parallel, test_combined,
+};
 use engine::report::{disagreements_csv, write_atomic};
-use engine::store::{load_members, run_to_toml};
+use engine::robot::SimulatedRobot;
+use engine::store::{RunLog, load_members, run_to_toml};
 
-use super::folder::{RunFolder, create, draw_frame, draw_trails, write_json};
+use super::folder::{RunFolder, create, draw_frame, draw_trails, write_json, write_log};
 use super::run::print_many;
 use super::stop::{INTERRUPTED, on_ctrl_c};
 use super::test::print_figures;
@@ -22,6 +25,7 @@ const SHOWN: usize = 5;
 struct SeedResult {
     tested: CombinedRun,
     summary: Summary,
+    log: RunLog,
 }
 
 pub(super) fn run(
@@ -41,9 +45,12 @@ pub(super) fn run(
     let stop = on_ctrl_c()?;
     let results = in_parallel(seeds, arguments.threads.unwrap_or(0) as usize, |seed| {
         let started = Instant::now();
-        let tested = test_combined(plan, &members, seed, &stop, &mut |_, _| ())?;
-        let summary = Summary::of_combination(plan, &members, &tested, seed, started.elapsed().as_secs_f64());
-        Ok(SeedResult { tested, summary })
+        let mut log = RunLog::new(plan);
+        let mut keep = |cycle: &Cycle<SimulatedRobot>, step: &Step| log.test.add(cycle, step, false);
+        let tested = test_combined(plan, &members, seed, &stop, &mut keep)?;
+        let mut summary = Summary::of_combination(plan, &members, &tested, seed, started.elapsed().as_secs_f64());
+        summary.log_sha256 = Some(log.sha256());
+        Ok(SeedResult { tested, summary, log })
     })?;
     let good = if let [result] = results.as_slice() {
         write_seed(path, plan, &members, result)?;
@@ -73,6 +80,7 @@ pub(super) fn run(
 
 fn write_seed(folder: &Path, plan: &Plan, members: &[Member], result: &SeedResult) -> Result<()> {
     write_json(&folder.join("summary.json"), &result.summary)?;
+    write_log(folder, plan, members, result.summary.seed, &result.log)?;
     let names: Vec<&str> = members.iter().map(|member| member.name.as_str()).collect();
     let table = disagreements_csv(&names, &plan.settings.actions, &result.tested.disagreements);
     write_atomic(&folder.join("disagreements.csv"), table.as_bytes())?;

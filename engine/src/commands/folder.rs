@@ -9,13 +9,14 @@ use engine::report::{
     CurveData, CurveRow, PolicyData, PolicyState, TrajectoryData, certainty_grid, curve_csv, learning_curve, policy,
     snapshot_frame, trajectories, write_atomic,
 };
-use engine::store::{policy_to_toml, run_to_toml};
+use engine::store::{LOG_FILE, RunLog, policy_to_toml, run_to_toml};
 
 /// One seed's results.
 pub(super) struct SeedResult {
     pub(super) learned: Learned,
     pub(super) tested: TestRun,
     pub(super) summary: Summary,
+    pub(super) log: RunLog,
 }
 
 /// A folder for one run, of one seed or many.
@@ -123,7 +124,14 @@ fn write_seed(folder: &Path, plan: &Plan, result: &SeedResult) -> Result<()> {
         .collect();
     write_atomic(&folder.join("curve.csv"), curve_csv(WINDOW_STEPS, &rules, &rows).as_bytes())?;
     let table = policy_text(plan, &result.learned)?;
-    write_atomic(&folder.join("policy.toml"), table.as_bytes())
+    write_atomic(&folder.join("policy.toml"), table.as_bytes())?;
+    write_log(folder, plan, &[], result.summary.seed, &result.log)
+}
+
+/// Writes `log.bin`, which names the run that it belongs to.
+pub(super) fn write_log(folder: &Path, plan: &Plan, members: &[Member], seed: u64, log: &RunLog) -> Result<()> {
+    let run = run_to_toml(plan, members, seed)?;
+    write_atomic(&folder.join(LOG_FILE), &log.to_bytes(plan, seed, &run)?)
 }
 
 fn policy_text(plan: &Plan, learned: &Learned) -> Result<String> {

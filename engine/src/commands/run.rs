@@ -6,8 +6,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use engine::diagnostic::Result;
-use engine::experiment::{Overrides, Plan, Progress, Spread, Summary, in_parallel, learn, test};
+use engine::experiment::{Overrides, Plan, Progress, Spread, Summary, in_parallel, learn_into, test_into};
 use engine::reward::Behaviour;
+use engine::store::RunLog;
 
 use super::folder::{RunFolder, SeedResult};
 use super::sources::catalogue;
@@ -83,19 +84,20 @@ fn learn_all(
         }
     };
     let results = in_parallel(seeds, threads, |seed| {
-        let started = Instant::now();
-        let mut learned = learn(plan, seed, stop, &report)?;
+        let (started, mut log) = (Instant::now(), RunLog::new(plan));
+        let mut learned = learn_into(plan, seed, stop, &report, &mut log.learning)?;
         if let Some(fault) = learned.fault.take() {
             let kept = folder.keep(plan, &learned, seeds.len() > 1)?;
             console.note(&format!("what was learned in {} steps is kept in {}", learned.steps, kept.display()));
             return Err(fault);
         }
-        let tested = test(plan, &learned.policy, seed, stop)?;
-        let summary = Summary::new(plan, &learned, tested.figures.clone(), started.elapsed().as_secs_f64());
+        let tested = test_into(plan, &learned.policy, seed, stop, &mut log.test)?;
+        let mut summary = Summary::new(plan, &learned, tested.figures.clone(), started.elapsed().as_secs_f64());
+        summary.log_sha256 = Some(log.sha256());
         if bar.is_hidden() && !plain {
             console.note(&format!("seed {seed}: {}", one_line(&summary)));
         }
-        Ok(SeedResult { learned, tested, summary })
+        Ok(SeedResult { learned, tested, summary, log })
     });
     bar.finish_and_clear();
     results

@@ -39,6 +39,9 @@ pub struct Summary {
     pub test: TestFigures,
     /// SHA-256 over every step of learning and the learned table.
     pub state_hash: String,
+    /// SHA-256 over the records of the log, as its last digest; absent if none was kept.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub log_sha256: Option<String>,
     /// Whether it was stopped before its steps were done.
     pub interrupted: bool,
     /// The policies that were combined and where they disagree; absent from a behaviour that learns. Nothing was learned
@@ -140,6 +143,7 @@ impl Summary {
             states_seen: learned.policy.rows().iter().flatten().count(),
             interrupted: learned.steps < plan.settings.run.steps || test.steps < plan.settings.run.test_steps,
             state_hash: learned.state_hash.clone(),
+            log_sha256: None,
             combination: None,
             test,
         }
@@ -161,6 +165,7 @@ impl Summary {
             states_seen: members.iter().map(|member| member.policy.rows().iter().flatten().count()).sum(),
             interrupted: test.steps < plan.settings.run.test_steps,
             state_hash: tested.run.state_hash.clone(),
+            log_sha256: None,
             combination: Some(tested.figures.clone()),
             test,
         }

@@ -1,9 +1,11 @@
 //! Files that a run leaves and that a later command reads.
 
+mod log;
 mod members;
 mod policy_file;
 mod run_file;
 
+pub use log::{LOG_FILE, MAGIC, RecordedRun, RunLog, read_log};
 pub use members::load_members;
 pub use policy_file::{StoredPolicy, policy_from_toml, policy_to_toml};
 pub use run_file::{Decider, StoredRun, run_to_toml};
