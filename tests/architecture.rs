@@ -114,6 +114,24 @@ fn sines_come_from_libm() {
 }
 
 #[test]
+fn every_code_of_a_message_has_a_page_and_every_page_a_message() {
+    let pages: Vec<_> = engine::diagnostic::all_codes().collect();
+    let sources = engine_sources().into_iter().filter(|(_, path, _)| !path.ends_with("diagnostic/codes.rs"));
+    let text: String = sources.map(|(_, _, text)| text).collect();
+    let is_code = |word: &&str| {
+        let begins = word.starts_with("E-") || word.starts_with("W-");
+        begins && word.len() > 3 && word.chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '-')
+    };
+    let codes: std::collections::BTreeSet<&str> = text.split('"').filter(is_code).collect();
+    for code in &codes {
+        assert!(pages.contains(code), "{code} needs a page in diagnostic/codes.rs");
+    }
+    for page in pages {
+        assert!(codes.contains(page), "no message has the code {page}");
+    }
+}
+
+#[test]
 fn every_file_is_one_idea() {
     let folders = ["engine/src", "plugins", "tests"];
     for path in folders.iter().flat_map(|folder| sources(&root().join(folder))) {

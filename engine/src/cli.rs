@@ -1,8 +1,12 @@
 //! The command line: names, defaults and help, no logic.
 
+mod recorded;
+
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+
+pub(crate) use recorded::{ExplainArguments, ReplayArguments, RescoreArguments};
 
 /// Learns visual robot behaviours from reward scripts: learned, tested and drawn in about a second.
 #[derive(Debug, Parser)]
@@ -18,6 +22,12 @@ pub(crate) enum Command {
     Run(RunArguments),
     /// Test a learned policy again, in the same or another world
     Test(TestArguments),
+    /// Play a recorded run again and compare every step; with --verify, learn it again too
+    Replay(ReplayArguments),
+    /// Why a step was rewarded as it was, or what the code of an error means
+    Explain(ExplainArguments),
+    /// Judge a recorded run by another script, and show which states change their action
+    Rescore(RescoreArguments),
     /// Measure steps per second, and where the time goes
     Bench(BenchArguments),
     /// Measure the paper's figures and claims again, and draw them beside one another
@@ -40,6 +50,9 @@ impl Command {
         match self {
             Self::Run(arguments) => arguments.json,
             Self::Test(arguments) => arguments.json,
+            Self::Replay(arguments) => arguments.json,
+            Self::Explain(arguments) => arguments.json,
+            Self::Rescore(arguments) => arguments.json,
             Self::Bench(arguments) => arguments.json,
             Self::Reproduce(arguments) => arguments.json,
             Self::Filter(arguments) => arguments.json,

@@ -5,7 +5,12 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+mod codes;
+mod excerpt;
 mod render;
+
+pub use codes::{all_codes, code_page};
+pub use excerpt::excerpt;
 
 /// The result of anything that a user's input can make fail.
 pub type Result<T> = std::result::Result<T, Box<Diagnostic>>;

@@ -31,6 +31,9 @@ fn run(command: &Command, console: &mut Console) -> Result<u8, ConsoleError> {
     match command {
         Command::Run(arguments) => commands::run::run(arguments, console),
         Command::Test(arguments) => commands::test::run(arguments, console),
+        Command::Replay(arguments) => commands::replay::run(arguments, console),
+        Command::Explain(arguments) => commands::explain::run(arguments, console),
+        Command::Rescore(arguments) => commands::rescore::run(arguments, console),
         Command::Bench(arguments) => commands::bench::run(arguments, console),
         Command::Reproduce(arguments) => commands::reproduce::run(arguments, console),
         Command::Filter(arguments) => commands::filter::run(arguments, console),

@@ -2,13 +2,17 @@
 
 pub(crate) mod bench;
 mod combine;
+pub(crate) mod explain;
 pub(crate) mod filter;
 mod folder;
 pub(crate) mod new;
 pub(crate) mod plugins;
 pub(crate) mod reference;
+pub(crate) mod replay;
 pub(crate) mod reproduce;
+pub(crate) mod rescore;
 pub(crate) mod run;
 pub(crate) mod sources;
 mod stop;
 pub(crate) mod test;
+mod words;

@@ -88,11 +88,17 @@ impl Learner {
 
     /// Chooses an action in `state` by softmax at the state's temperature, and counts the visit.
     pub fn choose(&mut self, state: usize) -> usize {
+        let visits = self.visit(state);
+        self.softmax.choose(self.table.row(state), visits, &mut self.random)
+    }
+
+    /// Counts a visit of a state in which someone else chose, and tells how many there were before.
+    pub fn visit(&mut self, state: usize) -> u64 {
         let visits = self.table.visit(state);
         if let Some(image) = self.mirror.as_ref().map(|mirror| mirror.state(state)).filter(|image| *image != state) {
             self.table.visit(image);
         }
-        self.softmax.choose(self.table.row(state), visits, &mut self.random)
+        visits
     }
 
     /// Learns from one step.

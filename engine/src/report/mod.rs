@@ -19,6 +19,7 @@ mod frame;
 mod glyphs;
 mod plan;
 mod policy;
+mod policy_diff;
 mod raster;
 mod route;
 mod sheet;
@@ -32,6 +33,7 @@ pub use curve::{CurveData, learning_curve};
 pub use disagreements::disagreements_csv;
 pub use frame::{FrameData, FramePanel, frame, snapshot_frame};
 pub use policy::{PolicyData, PolicyState, policy};
+pub use policy_diff::{PolicyDiffData, StateChange, policy_diff};
 pub use trajectory::{TrajectoryData, trajectories};
 
 /// One picture in two forms.

@@ -17,7 +17,7 @@ const MOST: usize = 64;
 const ACROSS: usize = 8;
 const STEP_X_PX: f64 = (WIDTH_PX - 2.0 * MARGIN_PX) / ACROSS as f64;
 const STEP_Y_PX: f64 = 106.0;
-const ICON_PX: f64 = 63.0;
+pub(super) const ICON_PX: f64 = 63.0;
 /// The longest arrow, pixels.
 const ARROW_PX: f64 = 46.0;
 
@@ -76,11 +76,11 @@ pub fn policy(data: &PolicyData<'_>) -> Result<Picture> {
 }
 
 /// How strongly a state is drawn, 0 to 1: by the order of magnitude of its visits.
-fn strength(visits: u64, most: u64) -> f64 {
+pub(super) fn strength(visits: u64, most: u64) -> f64 {
     if visits == 0 { 0.0 } else { 0.25 + 0.75 * libm::log1p(visits as f64) / libm::log1p(most as f64) }
 }
 
-fn icon(sheet: &Sheet, min: Spot, (rows, columns): (usize, usize), state: &PolicyState, strength: f64) {
+pub(super) fn icon(sheet: &Sheet, min: Spot, (rows, columns): (usize, usize), state: &PolicyState, strength: f64) {
     let max = (min.0 + units(ICON_PX), min.1 + units(ICON_PX));
     let x = |column: usize| min.0 + units(ICON_PX * column as f64 / columns.max(1) as f64);
     let y = |row: usize| min.1 + units(ICON_PX * row as f64 / rows.max(1) as f64);
@@ -117,7 +117,7 @@ fn short(value: f64) -> String {
 }
 
 /// The way that the robot would take in some time, from `foot` upwards: length tells speed, bend the turn.
-fn motion(sheet: &Sheet, foot: Spot, state: &PolicyState, fastest: f64) {
+pub(super) fn motion(sheet: &Sheet, foot: Spot, state: &PolicyState, fastest: f64) {
     let ink = match state {
         PolicyState { visits: 0, .. } => return,
         PolicyState { best, .. } if best.linear_m_per_s < 0.0 => VERMILION,

@@ -1,0 +1,178 @@
+//! Why one recorded step was rewarded as it was: rule by rule, with the facts and the beam that made it so.
+
+use serde::Serialize;
+
+use super::{Ledger, Phase, Plan, Playback};
+use crate::diagnostic::Result;
+use crate::reward::{Evidence, FactRead, Judge, RuleText};
+
+/// One step with its reasons.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StepReasons {
+    /// The step's number, from 0.
+    pub step: usize,
+    /// When it ended, seconds since the phase began; time in recovery is not counted.
+    pub time_s: f64,
+    /// The state in which the action was chosen, and its cells, row by row from the top left.
+    pub state: StateCells,
+    /// The same at the end of the step, before any recovery.
+    pub next_state: StateCells,
+    /// The action's number.
+    pub action: usize,
+    /// Its forward speed, m/s, and turning speed, rad/s, anticlockwise positive.
+    pub motion: [f64; 2],
+    /// Whether the action was not the best known one of its state.
+    pub explored: bool,
+    /// The sum of what the rules added.
+    pub reward: f64,
+    /// Whether the script asked for recovery.
+    pub recover: bool,
+    /// Whether the body touched something.
+    pub contact: bool,
+    /// Whether the robot lost its footing.
+    pub fallen: bool,
+    /// The true pose at the end: metres, metres, radians.
+    pub pose: [f64; 3],
+    /// The true pose of the prey, if there is one.
+    pub prey: Option<[f32; 3]>,
+    /// Every rule, and `fn reward` last.
+    pub rules: Vec<RuleReasons>,
+}
+
+/// A state with the cells that it stands for.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct StateCells {
+    /// Its number.
+    pub index: usize,
+    /// Which cells are filled, row by row from the top left.
+    pub cells: Vec<bool>,
+}
+
+/// What one rule said of a step, and why.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RuleReasons {
+    /// Its name; `reward` for the function.
+    pub name: String,
+    /// Its line in the script, from 1.
+    pub line: usize,
+    /// What it added; null if it did not fire.
+    pub added: Option<f64>,
+    /// Whether it was asked at all: a rule before it may have ended the step with recovery.
+    pub asked: bool,
+    /// For how many steps its condition has held; 0 when it has just fired.
+    pub held: u32,
+    /// For how many steps it must hold to fire.
+    pub needed: u32,
+    /// The parts of its condition.
+    pub parts: Vec<PartReasons>,
+}
+
+/// One part of a condition.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PartReasons {
+    /// Its text in the script.
+    pub text: String,
+    /// Its first and last byte in the script, the last one not included.
+    pub span: [usize; 2],
+    /// Whether it held; null where only the whole condition was judged.
+    pub holds: Option<bool>,
+    /// The facts that it read.
+    pub facts: Vec<FactReasons>,
+}
+
+/// One fact as it was.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FactReasons {
+    /// As it stands in the script.
+    pub name: String,
+    /// Its value; flags are 0 or 1.
+    pub value: f64,
+    /// The unit, in words; empty for flags.
+    pub unit: &'static str,
+    /// The beam of the laser that made it so.
+    pub beam: Option<usize>,
+    /// Where that beam looks, degrees from straight ahead, positive to the left.
+    pub angle_deg: Option<f64>,
+}
+
+impl StepReasons {
+    /// Plays one more step and tells why it was rewarded; nothing after the last step.
+    ///
+    /// # Errors
+    /// As [`Playback::advance`].
+    pub fn of_next(plan: &Plan, ledger: &Ledger, playback: &mut Playback<'_>) -> Result<Option<Self>> {
+        let index = playback.done();
+        let (Some(step), Some(record)) = (playback.advance()?, ledger.record(index)) else { return Ok(None) };
+        let (cycle, twist) = (playback.cycle(), plan.settings.actions[step.action]);
+        let cells = |state: usize| StateCells { index: state, cells: cycle.grid().cells(state) };
+        let stopped_by = cycle.fired().iter().rposition(Option::is_some).filter(|_| step.recover);
+        let rules = plan.behaviour.rules().iter().enumerate();
+        let rules = rules.map(|(rule, text)| RuleReasons {
+            added: cycle.fired()[rule],
+            asked: stopped_by.is_none_or(|last| rule <= last),
+            ..RuleReasons::of(plan, text, cycle.judge(), rule)
+        });
+        let pose = record.pose;
+        Ok(Some(Self {
+            step: index,
+            time_s: (index + 1) as f64 * plan.settings.run.period_s,
+            state: cells(step.state),
+            next_state: cells(step.next_state),
+            action: step.action,
+            motion: [twist.linear_m_per_s, twist.angular_rad_per_s],
+            explored: record.explored,
+            reward: step.reward,
+            recover: step.recover,
+            contact: step.contact,
+            fallen: record.fallen,
+            pose: [pose.x_m, pose.y_m, pose.yaw_rad],
+            prey: record.prey,
+            rules: rules.collect(),
+        }))
+    }
+
+    /// The reasons of one step of a recorded phase.
+    ///
+    /// # Errors
+    /// If the phase has no such step, or cannot be played.
+    pub fn of_step(plan: &Plan, seed: u64, phase: Phase, ledger: &Ledger, step: usize) -> Result<Option<Self>> {
+        let mut playback = Playback::new(plan, seed, phase, ledger)?;
+        playback.seek(step)?;
+        Self::of_next(plan, ledger, &mut playback)
+    }
+}
+
+impl RuleReasons {
+    fn of(plan: &Plan, text: &RuleText, judge: &Judge, rule: usize) -> Self {
+        let (held, needed) = judge.held(rule);
+        let beams = plan.settings.laser.beams as usize;
+        let fact = |fact: FactRead| FactReasons {
+            angle_deg: fact.beam.map(|beam| beam_angle_deg(beam, beams)),
+            name: fact.name,
+            value: fact.value,
+            unit: fact.unit,
+            beam: fact.beam,
+        };
+        let part = |Evidence { span, holds, facts }| PartReasons {
+            text: plan.behaviour.source().text.get(span.clone()).unwrap_or_default().to_owned(),
+            span: [span.start, span.end],
+            holds,
+            facts: facts.into_iter().map(fact).collect(),
+        };
+        Self {
+            name: text.name.clone(),
+            line: text.line,
+            added: None,
+            asked: true,
+            held,
+            needed,
+            parts: judge.evidence(rule).into_iter().map(part).collect(),
+        }
+    }
+}
+
+/// Where a beam of a laser with so many beams over 180 degrees looks: degrees from straight ahead, positive to the left.
+#[must_use]
+pub fn beam_angle_deg(beam: usize, beams: usize) -> f64 {
+    180.0 * beam as f64 / (beams.max(2) - 1) as f64 - 90.0
+}

@@ -1,0 +1,232 @@
+//! A recorded run under another reward: what every rule would have said, and what would have been learned from it.
+//!
+//! The recorded steps stay as they are: the robot did not know the new reward. Learning again is the run's own learner,
+//! led along the recorded states and actions in their order. So the same script gives the stored table bit for bit, and
+//! whatever changes is the reward's doing. A learner that goes over the steps until nothing moves (`passes`) knows more of
+//! them, and is compared with the old reward learned in the same way.
+
+use std::sync::Arc;
+
+use super::{Ledger, Phase, Plan, Playback};
+use crate::diagnostic::{Diagnostic, Kind, Result, printable};
+use crate::learner::{Learner, Policy, Transition};
+use crate::random::{Random, Stream};
+use crate::reward::Behaviour;
+use crate::settings::{SETTINGS, apply};
+
+/// What the rules said in one step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Judged {
+    reward: f64,
+    recover: bool,
+    /// The robot was put elsewhere after this step, because the recorded run asked for it.
+    moved: bool,
+}
+
+/// One rule over a whole run.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
+pub struct RuleScore {
+    /// How often it fired.
+    pub fired: u64,
+    /// Sum of what it added.
+    pub total: f64,
+}
+
+/// One rule before and after.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct RuleChange {
+    /// Its name.
+    pub name: String,
+    /// In the recorded run; null if the old script has no rule of this name.
+    pub before: Option<RuleScore>,
+    /// Under the new script; null if that has no rule of this name.
+    pub after: Option<RuleScore>,
+}
+
+/// A recorded run under another reward.
+#[derive(Debug, Clone)]
+pub struct Rescored {
+    /// Rules of both scripts, those of the new one first.
+    pub rules: Vec<RuleChange>,
+    /// Sum of the rewards as recorded.
+    pub reward_before: f64,
+    /// Sum of the rewards under the new script.
+    pub reward_after: f64,
+    /// Steps whose reward changes.
+    pub steps_changed: u64,
+    /// Steps in which only the new script asks for recovery; the recorded robot went on from there.
+    pub new_recoveries: u64,
+    /// Steps in which only the old script asked for recovery.
+    pub old_recoveries: u64,
+    /// What the old reward teaches.
+    pub policy_before: Policy,
+    /// What the new reward teaches.
+    pub policy_after: Policy,
+    /// By state, then by action: how often the recorded run did it.
+    tries: Vec<u64>,
+}
+
+impl Rescored {
+    /// How often the recorded run took an action in a state.
+    #[must_use]
+    pub fn tries(&self, state: usize, action: usize) -> u64 {
+        self.tries.get(state * self.policy_before.actions() + action).copied().unwrap_or(0)
+    }
+
+    /// How often the recorded run chose in a state.
+    #[must_use]
+    pub fn visits(&self, state: usize) -> u64 {
+        (0..self.policy_before.actions()).map(|action| self.tries(state, action)).sum()
+    }
+
+    /// The states whose best action changes, the most visited first.
+    #[must_use]
+    pub fn changed_states(&self) -> Vec<usize> {
+        let best = |policy: &Policy, state| policy.best(state).map(|(action, _)| action);
+        let states = 0..self.policy_before.rows().len();
+        let mut changed: Vec<usize> =
+            states.filter(|state| best(&self.policy_before, *state) != best(&self.policy_after, *state)).collect();
+        changed.sort_by_key(|state| (std::cmp::Reverse(self.visits(*state)), *state));
+        changed
+    }
+}
+
+/// The plan of a recorded run with the rules of another script.
+///
+/// # Errors
+/// `E-RESCORE` if the scripts differ in what the recorded run saw or did, so that its steps say nothing about the other.
+pub fn plan_with_rules_of(plan: &Plan, behaviour: Arc<Behaviour>) -> Result<Plan> {
+    let (old, new) = (plan.behaviour.settings(), behaviour.settings());
+    let mut settings = plan.settings.clone();
+    for row in SETTINGS {
+        let (before, after) = ((row.get)(old), (row.get)(new));
+        match row.group {
+            _ if before == after => {}
+            "learner" if apply(&mut settings, row.group, row.key, &after).is_ok() => {}
+            "run" if row.key != "period_s" => {}
+            _ => return other(&behaviour, &row.name(), &format!("{}.{}", row.group, row.key)).into(),
+        }
+    }
+    let parts: [(bool, &str, &str); 4] = [
+        (old.world == new.world, "the world", "world"),
+        (old.filters == new.filters, "the filters", "filter:0"),
+        (old.actions == new.actions, "the actions", "actions"),
+        (old.policies == new.policies, "the policies", "policy:0"),
+    ];
+    if let Some((_, what, place)) = parts.iter().find(|(same, ..)| !same) {
+        return other(&behaviour, what, place).into();
+    }
+    Plan::with_layout(behaviour, settings, Arc::clone(&plan.layout))
+}
+
+fn other(behaviour: &Behaviour, what: &str, place: &str) -> Diagnostic {
+    let message = format!("'{}' sets {what} otherwise than the recorded run did", printable(behaviour.name()));
+    let error = Diagnostic::new(Kind::State, "E-RESCORE", message)
+        .help("a record can be judged again, not seen again: change rules only, or learn anew with engine run");
+    match behaviour.place_of(place) {
+        Some(span) => error.at(behaviour.source(), span, "the recorded run had something else"),
+        None => error,
+    }
+}
+
+/// Judges the learning steps of a recorded run by the rules of `new`, and learns both rewards again from these steps.
+///
+/// # Errors
+/// If the run cannot be played, or the new script fails on its facts.
+pub fn rescore(plan: &Plan, new: &Plan, seed: u64, ledger: &Ledger, passes: u64) -> Result<Rescored> {
+    let mut playback = Playback::new(plan, seed, Phase::Learning, ledger)?;
+    let mut judge = new.judge()?;
+    judge.facts_mut().clone_from(playback.cycle().facts());
+    judge.calibrate()?;
+    let mut scores = [
+        vec![RuleScore::default(); plan.behaviour.rules().len()],
+        vec![RuleScore::default(); new.behaviour.rules().len()],
+    ];
+    let mut judged: [Vec<Judged>; 2] = [Vec::with_capacity(ledger.len()), Vec::with_capacity(ledger.len())];
+    while let Some(step) = playback.advance()? {
+        judge.facts_mut().clone_from(playback.cycle().facts());
+        let verdict = judge.judge()?;
+        if step.recover || verdict.recover {
+            judge.recovered();
+        }
+        for (scores, fired) in scores.iter_mut().zip([playback.cycle().fired(), judge.fired()]) {
+            for (score, value) in scores.iter_mut().zip(fired) {
+                score.fired += u64::from(value.is_some());
+                score.total += value.unwrap_or(0.0);
+            }
+        }
+        let moved = step.recover;
+        judged[0].push(Judged { reward: step.reward, recover: step.recover, moved });
+        judged[1].push(Judged { reward: verdict.reward, recover: verdict.recover, moved });
+    }
+    let [before, after] = judged;
+    let pairs = || before.iter().zip(&after);
+    let count = |is: fn((&Judged, &Judged)) -> bool| pairs().filter(|pair| is(*pair)).count() as u64;
+    let sum = |steps: &[Judged]| steps.iter().map(|step| step.reward).sum();
+    Ok(Rescored {
+        rules: rule_changes(plan, new, &scores),
+        reward_before: sum(&before),
+        reward_after: sum(&after),
+        steps_changed: count(|(old, new)| old.reward != new.reward),
+        new_recoveries: count(|(old, new)| !old.recover && new.recover),
+        old_recoveries: count(|(old, new)| old.recover && !new.recover),
+        policy_before: learn_along(plan, seed, ledger, &before, passes)?,
+        policy_after: learn_along(new, seed, ledger, &after, passes)?,
+        tries: tries(plan, ledger)?,
+    })
+}
+
+fn rule_changes(old: &Plan, new: &Plan, scores: &[Vec<RuleScore>; 2]) -> Vec<RuleChange> {
+    let find = |plan: &Plan, scores: &[RuleScore], name: &str| {
+        let index = plan.behaviour.rules().iter().position(|rule| rule.name == name)?;
+        scores.get(index).copied()
+    };
+    let names = new.behaviour.rules().iter().chain(old.behaviour.rules()).map(|rule| rule.name.as_str());
+    let mut rules: Vec<RuleChange> = Vec::new();
+    for name in names {
+        if !rules.iter().any(|rule| rule.name == name) {
+            let (before, after) = (find(old, &scores[0], name), find(new, &scores[1], name));
+            rules.push(RuleChange { name: name.to_owned(), before, after });
+        }
+    }
+    rules
+}
+
+/// What a plan's learner learns when it is led along recorded steps.
+fn learn_along(plan: &Plan, seed: u64, ledger: &Ledger, judged: &[Judged], passes: u64) -> Result<Policy> {
+    let settings = &plan.settings;
+    let random = Random::new(seed, Stream::Learner);
+    let mut learner = Learner::new(&settings.learner, plan.grid()?.states(), settings.actions.len(), random);
+    if let Some(mirror) = plan.mirror()? {
+        learner = learner.with_mirror(&settings.learner, mirror);
+    }
+    for _ in 0..passes {
+        for (record, judged) in ledger.records().zip(judged) {
+            learner.visit(record.state as usize);
+            learner.learn(&Transition {
+                state: record.state as usize,
+                action: usize::from(record.action),
+                reward: judged.reward,
+                next_state: record.next_state as usize,
+                terminal: judged.recover && settings.learner.failure_is_terminal,
+            });
+            // What follows does not follow from this step if the robot was put elsewhere.
+            if judged.recover || judged.moved {
+                learner.forget();
+            }
+        }
+        learner.forget();
+    }
+    Ok(learner.policy())
+}
+
+fn tries(plan: &Plan, ledger: &Ledger) -> Result<Vec<u64>> {
+    let actions = plan.settings.actions.len();
+    let mut tries = vec![0; plan.grid()?.states() * actions];
+    for record in ledger.records() {
+        if let Some(count) = tries.get_mut(record.state as usize * actions + usize::from(record.action)) {
+            *count += 1;
+        }
+    }
+    Ok(tries)
+}
