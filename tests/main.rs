@@ -23,6 +23,8 @@ mod ledger;
 mod new_filter;
 /// Filters listed and photographs seen through them; what cannot be seen.
 mod photos;
+/// Recorded runs through the program: replayed, explained, rescored, damaged.
+mod replay;
 /// The paper's claims through the program, quickly; the map that a test leaves.
 mod reproduce;
 /// What a run leaves, and that it is well-formed.

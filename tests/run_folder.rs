@@ -93,4 +93,5 @@ fn ctrl_c_keeps_what_was_learned() {
     assert_eq!(summary["interrupted"], true);
     assert!(summary["steps"].as_u64().unwrap() < 100_000_000);
     assert!(bench.read("stopped/policy.toml").contains("[[state]]"));
+    assert_eq!(bench.engine(&["replay", "stopped", "--verify"]).status.code(), Some(0));
 }

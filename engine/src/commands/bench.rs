@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use engine::diagnostic::{Diagnostic, Kind, Result};
-use engine::experiment::{Cycle, Overrides, Plan, in_parallel, learn};
+use engine::experiment::{Cycle, Ledger, Overrides, Plan, in_parallel, learn};
 use engine::filter::Chain;
 use engine::geometry::{Isometry3, Pose};
 use engine::learner::{Learner, Transition};
@@ -209,6 +209,10 @@ fn stages(plan: &Plan, samples: &Samples, steps: u64) -> Result<Vec<Stage>> {
         let action = learner.choose(state);
         learner.learn(&Transition { state, action, reward: 0.0, next_state, terminal: false });
     });
+    let mut cycle = Cycle::new(plan, SimulatedRobot::new(layout, settings, 1)?)?;
+    let step = cycle.step(0)?;
+    let mut ledger = Ledger::new(plan, steps.max((ROUNDS * SAMPLES) as u64));
+    let log = median_us(calls, |_| black_box(&mut ledger).add(black_box(&cycle), &step, false));
     if let Some(error) = script_failure {
         return Err(error);
     }
@@ -220,5 +224,6 @@ fn stages(plan: &Plan, samples: &Samples, steps: u64) -> Result<Vec<Stage>> {
         Stage { name: "state", us: state },
         Stage { name: "script", us: script },
         Stage { name: "learner", us: learner },
+        Stage { name: "log", us: log },
     ])
 }

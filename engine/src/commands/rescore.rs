@@ -192,10 +192,15 @@ fn print_states(console: &mut Console, plan: &Plan, report: &Report) -> std::res
         changed.len(),
         report.states_visited
     ))?;
+    let guesses = changed.iter().filter(|entry| entry.after.tried == 0).count();
+    if guesses > 0 {
+        console.line(&format!("note:      {guesses} of these to an action that the record never tried there"))?;
+    }
     let columns = plan.settings.grid.columns as usize;
     for entry in changed.iter().take(SHOWN) {
         let guess = |choice: &Choice| match choice.tried {
             0 => "never tried there: a guess".to_owned(),
+            1 => format!("tried once, value {}", short(choice.value)),
             tried => format!("tried {tried} times, value {}", short(choice.value)),
         };
         let words = [

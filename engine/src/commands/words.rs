@@ -22,11 +22,11 @@ pub(super) fn icon(cells: &[bool], columns: usize) -> Vec<String> {
 /// `laser.nearest = 0.241 m: beam 37, 53° right of ahead`.
 pub(super) fn fact(fact: &FactReasons) -> String {
     let value = match (fact.unit, fact.value) {
-        ("", value) if value == 0.0 => "false".to_owned(),
-        ("", value) if value == 1.0 => "true".to_owned(),
+        ("", 0.0) => "false".to_owned(),
+        ("", 1.0) => "true".to_owned(),
         ("metres", value) => format!("{} m", short(value)),
         ("share", value) => format!("{:.2} %", 100.0 * value),
-        ("" | "beam" | "state" | "action", value) => short(value),
+        ("" | "number" | "beam" | "state" | "action", value) => short(value),
         (unit, value) => format!("{} {unit}", short(value)),
     };
     let beam = match (fact.beam, fact.angle_deg) {

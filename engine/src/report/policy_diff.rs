@@ -13,7 +13,7 @@ const ACROSS: usize = 4;
 const STEP_X_PX: f64 = (WIDTH_PX - 2.0 * MARGIN_PX) / ACROSS as f64;
 const STEP_Y_PX: f64 = 124.0;
 /// From the icon to the first motion, and from there to the second, pixels.
-const MOTION_PX: f64 = 48.0;
+const MOTION_PX: f64 = 60.0;
 const APART_PX: f64 = 82.0;
 
 /// What the picture shows.
@@ -55,9 +55,10 @@ pub fn policy_diff(data: &PolicyDiffData<'_>) -> Result<Picture> {
     let note = match data.states.len() {
         0 => "no state changes its best action".to_owned(),
         count if count > MOST => format!("{MOST} of {count} states that change their best action, most visited first"),
-        count => format!("{count} that change their best action: motion before and after, orange is backwards"),
+        1 => "1 state changes its best action".to_owned(),
+        count => format!("{count} states change their best action, most visited first"),
     };
-    let below = "below: state and visits; how often the record tried each motion there";
+    let below = "below: state, old value and visits; how often the record tried each motion there. Orange is backwards";
     sheet.text(words(&note, spot(MARGIN_PX, BELOW_TITLE_PX), SMALL_PX, QUIET));
     sheet.text(words(below, spot(MARGIN_PX, BELOW_TITLE_PX + 20.0), SMALL_PX, QUIET));
     for (index, change) in shown.iter().enumerate() {
@@ -67,7 +68,6 @@ pub fn policy_diff(data: &PolicyDiffData<'_>) -> Result<Picture> {
         let size = (data.rows, data.columns);
         icon(&sheet, spot(x_px, y_px), size, &change.before, strength(visits, most));
         let below_px = y_px + ICON_PX + 13.0;
-        sheet.text(words(&format!("{}", change.before.state), spot(x_px, below_px), SMALL_PX, TEXT));
         sheet.text(words(&format!("{visits} visits"), spot(x_px, below_px + 17.0), SMALL_PX, QUIET));
         for (side, state) in [&change.before, &change.after].into_iter().enumerate() {
             let x_px = x_px + ICON_PX + MOTION_PX + side as f64 * APART_PX;
@@ -111,7 +111,7 @@ mod tests {
     #[test]
     fn each_changed_state_says_how_much_the_record_knows_of_it() {
         let svg = drawn(&[change(1), change(23)]);
-        for words in ["2 that change their best action", "30 visits", "tried 5", "tried 2", "before", "after"] {
+        for words in ["2 states change their best action", "30 visits", "tried 5", "tried 2", "before", "after"] {
             assert!(svg.contains(words), "{words}");
         }
     }

@@ -127,7 +127,7 @@ fn readings(code: &Code, expr: &Expr, compiler: &mut Compiler<'_>) -> Vec<Readin
 /// The unit of a fact, and which beam to name with it.
 fn describe(chain: &Chain<'_>, compiler: &mut Compiler<'_>) -> Option<(&'static str, Look)> {
     match chain.group()? {
-        ("calibrated", _) => Some(("", Look::Nowhere)),
+        ("calibrated", _) => Some(("number", Look::Nowhere)),
         ("laser", []) => Some(("metres", Look::Least(ALL.0, ALL.1))),
         ("laser", [Link::Index(beam)]) => Some(("metres", Look::One(compiler.beam(beam)?))),
         ("laser", [Link::Call(call, _), rest @ ..]) => {
