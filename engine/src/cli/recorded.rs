@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::count;
+use super::{FilterSources, count};
 
 #[derive(Debug, Args)]
 #[command(
@@ -29,6 +29,8 @@ pub(crate) struct ReplayArguments {
     /// Print as JSON on standard output, and nothing else there
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) filters: FilterSources,
 }
 
 #[derive(Debug, Args)]
@@ -48,6 +50,8 @@ pub(crate) struct ExplainArguments {
     /// Print as JSON on standard output, and nothing else there
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) filters: FilterSources,
 }
 
 #[derive(Debug, Args)]
@@ -69,6 +73,8 @@ pub(crate) struct RescoreArguments {
     /// Print as JSON on standard output, and nothing else there
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) filters: FilterSources,
 }
 
 fn step(text: &str) -> Result<usize, String> {

@@ -10,6 +10,7 @@ use engine::store::{RecordedRun, StoredRun};
 use serde::Serialize;
 
 use super::folder::create;
+use super::sources::catalogue;
 use super::words::{fact, icon, motion, short};
 use crate::cli::ExplainArguments;
 use crate::console::{Console, ConsoleError};
@@ -35,7 +36,7 @@ pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::r
         let error = Diagnostic::new(Kind::Usage, "E-LOG-STEP", "which step is to be explained?");
         return Err(Box::new(error.help("add --step N; engine replay RUN shows when each rule fired")).into());
     };
-    let recorded = RecordedRun::load(Path::new(&arguments.topic))?;
+    let recorded = RecordedRun::load(Path::new(&arguments.topic), catalogue(&arguments.filters)?)?;
     let StoredRun { plan, seed, .. } = &recorded.stored;
     let (phase, ledger, name) = match arguments.test {
         false => (Phase::Learning, &recorded.log.learning, "learning"),

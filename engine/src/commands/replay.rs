@@ -10,6 +10,7 @@ use engine::robot::SimulatedRobot;
 use engine::store::{Decider, RecordedRun, RunLog, StoredRun};
 use serde::Serialize;
 
+use super::sources::catalogue;
 use super::stop::{INTERRUPTED, on_ctrl_c};
 use super::words::{direction, motion, short};
 use crate::cli::ReplayArguments;
@@ -69,7 +70,7 @@ struct Verified {
 }
 
 pub(crate) fn run(arguments: &ReplayArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
-    let recorded = RecordedRun::load(&arguments.run)?;
+    let recorded = RecordedRun::load(&arguments.run, catalogue(&arguments.filters)?)?;
     if arguments.verify {
         return verify(&recorded, console);
     }

@@ -12,6 +12,7 @@ use engine::store::{RecordedRun, StoredRun};
 use serde::Serialize;
 
 use super::folder::{create, write_json};
+use super::sources::catalogue;
 use super::words::{icon, motion, short, signed};
 use crate::cli::RescoreArguments;
 use crate::console::{Console, ConsoleError};
@@ -64,7 +65,8 @@ struct Choice {
 }
 
 pub(crate) fn run(arguments: &RescoreArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
-    let RecordedRun { stored: StoredRun { plan, seed, .. }, log, .. } = RecordedRun::load(&arguments.run)?;
+    let RecordedRun { stored: StoredRun { plan, seed, .. }, log, .. } =
+        RecordedRun::load(&arguments.run, catalogue(&arguments.filters)?)?;
     if log.learning.is_empty() {
         let message =
             format!("'{}' combines policies: it learned nothing that could be rescored", plan.behaviour.name());

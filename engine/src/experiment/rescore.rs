@@ -116,7 +116,7 @@ pub fn plan_with_rules_of(plan: &Plan, behaviour: Arc<Behaviour>) -> Result<Plan
     if let Some((_, what, place)) = parts.iter().find(|(same, ..)| !same) {
         return other(&behaviour, what, place).into();
     }
-    Plan::with_layout(behaviour, settings, Arc::clone(&plan.layout))
+    Plan::with_layout(behaviour, settings, Arc::clone(&plan.layout), Arc::clone(&plan.filters))
 }
 
 fn other(behaviour: &Behaviour, what: &str, place: &str) -> Diagnostic {

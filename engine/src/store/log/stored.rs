@@ -3,10 +3,12 @@
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
+use std::sync::Arc;
 
 use super::{LOG_FILE, RunLog, damaged, read_log};
 use crate::diagnostic::{Diagnostic, Kind, Result};
 use crate::experiment::Summary;
+use crate::filter::Catalogue;
 use crate::store::{StoredRun, read_stored};
 
 /// The longest log that is read, bytes: two phases of the most steps with a dozen reward functions each.
@@ -27,8 +29,8 @@ impl RecordedRun {
     ///
     /// # Errors
     /// If one is missing or damaged, or the four do not belong together.
-    pub fn load(folder: &Path) -> Result<Self> {
-        let stored = StoredRun::load(folder)?;
+    pub fn load(folder: &Path, filters: Arc<Catalogue>) -> Result<Self> {
+        let stored = StoredRun::load_with(folder, filters)?;
         let run = read_stored(&folder.join("run.toml"))?;
         let path = folder.join(LOG_FILE);
         let bytes = read_bytes(&path)?;

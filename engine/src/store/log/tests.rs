@@ -32,7 +32,9 @@ static SAMPLE: LazyLock<Sample> = LazyLock::new(|| {
     let layout = Arc::new(Layout::parse(SourceText::new("log.toml", WORLD)).unwrap());
     let mut settings = behaviour.settings().clone();
     (settings.run.steps, settings.run.test_steps) = (1200, 40);
-    let plan = Plan::with_layout(Arc::new(behaviour), settings, layout).unwrap();
+    let plan =
+        Plan::with_layout(Arc::new(behaviour), settings, layout, Arc::new(crate::filter::Catalogue::linked_in()))
+            .unwrap();
     let (mut learning, mut test) = (Ledger::new(&plan, 1200), Ledger::new(&plan, 40));
     let stop = AtomicBool::new(false);
     let learned = learn_into(&plan, SEED, &stop, &|_| (), &mut learning).unwrap();

@@ -1,5 +1,10 @@
 //! A page for every code: what it means, why it is refused, what to do. `engine explain CODE` prints it.
 
+mod filters;
+
+/// A table of pages for each subject; the codes of none of them stand in another.
+const TABLES: &[&[(&str, &str)]] = &[PAGES, filters::PAGES];
+
 /// Each code with its page, in the order of the alphabet.
 const PAGES: &[(&str, &str)] = &[
     (
@@ -18,22 +23,6 @@ const PAGES: &[(&str, &str)] = &[
         "E-CODE",
         "The word that was to be explained looks like a code, but no message of this engine has it.\n\
       Codes stand in brackets at the beginning of a message: error[E-SCRIPT-FACT]. Copy it from there.",
-    ),
-    (
-        "E-FILTER",
-        "A filter could not work on an image that it was given.\n\
-      The message says which image and what the filter said. Look at the filter's manual: engine plugins show NAME.",
-    ),
-    (
-        "E-FILTER-BLIND",
-        "The filters leave no pixel of any image, wherever the robot looks from its starts and its route.\n\
-      Every state would be the empty one, so nothing can be learned.\n\
-      Lower the filter's threshold, look at the colour it searches for, or tilt the camera; engine filter shows what it makes of images.",
-    ),
-    (
-        "E-FILTER-SETTING",
-        "A filter chain cannot be built: a name or a parameter is wrong, or a filter reads another kind of picture than the one before it writes.\n\
-      The last filter must write a mask, since the grid counts its pixels. engine plugins lists the filters with their parameters.",
     ),
     (
         "E-GRID",
@@ -97,7 +86,6 @@ const PAGES: &[(&str, &str)] = &[
         "A picture could not be drawn or encoded.\n\
       The results in numbers are not touched by this. The message says which part failed.",
     ),
-    ("E-PLUGIN", "There is no filter of this name. engine plugins lists those that there are, with their manuals."),
     (
         "E-POLICY",
         "A learned policy cannot be used: its file is missing or damaged, or it was learned with another grid, other filters or other actions.\n\
@@ -227,12 +215,12 @@ const PAGES: &[(&str, &str)] = &[
 /// The page of a code.
 #[must_use]
 pub fn code_page(code: &str) -> Option<&'static str> {
-    PAGES.iter().find(|(known, _)| *known == code).map(|(_, page)| *page)
+    TABLES.iter().flat_map(|table| table.iter()).find(|(known, _)| *known == code).map(|(_, page)| *page)
 }
 
 /// Every code that has a page.
 pub fn all_codes() -> impl Iterator<Item = &'static str> {
-    PAGES.iter().map(|(code, _)| *code)
+    TABLES.iter().flat_map(|table| table.iter()).map(|(code, _)| *code)
 }
 
 #[cfg(test)]
@@ -241,12 +229,17 @@ mod tests {
 
     #[test]
     fn codes_stand_in_the_order_of_the_alphabet_and_once() {
-        assert!(PAGES.windows(2).all(|pair| pair[0].0 < pair[1].0));
+        for table in TABLES {
+            assert!(table.windows(2).all(|pair| pair[0].0 < pair[1].0));
+        }
+        let mut all: Vec<_> = all_codes().collect();
+        all.sort_unstable();
+        assert!(all.windows(2).all(|pair| pair[0] < pair[1]));
     }
 
     #[test]
     fn a_page_has_sentences_and_short_lines_of_thought() {
-        for (code, page) in PAGES {
+        for (code, page) in TABLES.iter().flat_map(|table| table.iter()) {
             assert!(page.ends_with('.') || page.ends_with(';'), "{code}");
             assert!(page.len() > 60 && page.lines().count() <= 4, "{code}");
         }
