@@ -17,6 +17,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("robot", &["world", "sensors"]),
     ("experiment", &["world", "sensors", "filter", "state", "learner", "reward", "robot"]),
     ("store", &["world", "filter", "state", "learner", "reward", "experiment"]),
+    ("record", &["world", "experiment"]),
     ("report", &["world", "sensors", "experiment"]),
     ("reproduce", &["world", "learner", "reward", "robot", "experiment", "report"]),
 ];

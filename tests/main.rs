@@ -1,6 +1,7 @@
 //! Integration tests, in one program. The table of contents:
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+#![allow(clippy::print_stdout, reason = "a test says why it was skipped")]
 
 /// Runs the engine in a scratch folder.
 mod support;
@@ -23,6 +24,8 @@ mod ledger;
 mod new_filter;
 /// Filters listed and photographs seen through them; what cannot be seen.
 mod photos;
+/// Recordings for viewers, read back by another reader.
+mod recording;
 /// Recorded runs through the program: replayed, explained, rescored, damaged.
 mod replay;
 /// The paper's claims through the program, quickly; the map that a test leaves.

@@ -92,6 +92,16 @@ const PAGES: &[(&str, &str)] = &[
       Policies are combined by their states and actions, so these must be the same. Learn the policy again with what this script has.",
     ),
     (
+        "E-RECORD",
+        "The recording could not be made: it is of one seed, and its file must be in a folder that can be written.\n\
+         The run itself is not lost: its folder is written before the recording. Choose one seed with --seed.",
+    ),
+    (
+        "E-RECORD-BUILD",
+        "This engine was built without recording for Foxglove and Rerun, which few need and which takes time to build.\n\
+         Build it with: cargo build --release --features mcap.",
+    ),
+    (
         "E-RECOVERY-BLOCKED",
         "The robot is to be put back, but every place that it may be put to touches something or has no ground.\n\
       Move the starts or the route of the world away from walls, boxes and edges; for recovery(\"behind\"), give the mover a longer route.",
