@@ -11,13 +11,13 @@ use std::ptr::null_mut;
 use filter_api::abi::{
     MESSAGE_BYTES, OK, PANIC, PLUGIN_SYMBOL, RawDestroy, RawFrame, RawParameter, RawPlugin, RawProcess, RawText,
 };
-use filter_api::{Format, Frame, FrameMut};
+use filter_api::{Descriptor, Format, Frame, FrameMut};
 use libloading::Library;
 
 use super::catalogue::{Entry, Form};
 use super::described::{Described, DescribedParameter, LONGEST_TEXT_BYTES, MOST_PARAMETERS};
 use super::library;
-use super::running::{Running, failed, refused};
+use super::running::{Running, check_frames, failed, refused};
 use super::trust::Trust;
 use crate::diagnostic::{Diagnostic, Kind, Result, printable};
 
@@ -35,7 +35,7 @@ pub(super) fn open(path: &Path, trust: &Trust) -> Result<Entry> {
         let native = Native::new(plugin, values).map_err(|Failure { panicked, words }| {
             if panicked { failed("E-FILTER-CRASH", name, &words) } else { refused(&words) }
         })?;
-        Ok(Box::new(InProcess { name, native }))
+        Ok(Box::new(InProcess { descriptor, native }))
     };
     let create = Box::new(create);
     Ok(Entry { descriptor, form: Form::Native, path: Some(path.to_owned()), sha256: Some(sha256), create })
@@ -114,6 +114,9 @@ fn text(raw: RawText) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
+/// What is wrong with a filter that says it made an instance, and gives none.
+pub(super) const NO_INSTANCE: &str = "it made no instance, and did not say why";
+
 /// Why a call of a library did not succeed.
 #[derive(Debug, PartialEq)]
 pub(super) struct Failure {
@@ -144,6 +147,9 @@ impl Native {
         // SAFETY: the arguments are as the law says, and live through the call.
         let status = unsafe { create(values.as_ptr(), values.len() as u32, &raw mut instance, message.pointer()) };
         message.outcome(status)?;
+        if instance.is_null() {
+            return Err(Failure { panicked: true, words: NO_INSTANCE.to_owned() });
+        }
         Ok(Self { process, destroy, instance })
     }
 
@@ -170,14 +176,15 @@ impl Native {
 
 /// A native filter in this process.
 struct InProcess {
-    name: &'static str,
+    descriptor: &'static Descriptor,
     native: Native,
 }
 
 impl Running for InProcess {
     fn process(&mut self, input: Frame<'_>, output: FrameMut<'_>) -> Result<()> {
+        check_frames(self.descriptor, &input, &output)?;
         self.native.process(input, output).map_err(|Failure { panicked, words }| {
-            failed(if panicked { "E-FILTER-CRASH" } else { "E-FILTER" }, self.name, &words)
+            failed(if panicked { "E-FILTER-CRASH" } else { "E-FILTER" }, self.descriptor.name, &words)
         })
     }
 }

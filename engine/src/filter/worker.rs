@@ -8,12 +8,12 @@ use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
-use filter_api::{Frame, FrameMut};
+use filter_api::{Descriptor, Frame, FrameMut};
 
 use super::catalogue::{Entry, Form};
 use super::described::Described;
 use super::library;
-use super::running::{Running, failed, refused};
+use super::running::{Running, check_frames, failed, refused};
 use super::trust::Trust;
 use super::wire::{Reply, Request, read_reply, write_request};
 use crate::diagnostic::{Diagnostic, Kind, Result, printable};
@@ -37,7 +37,7 @@ pub(super) fn open(path: &Path, trust: &Trust, program: &Path) -> Result<Entry> 
     let name = descriptor.name;
     let create = move |values: &[f64]| -> Result<Box<dyn Running>> {
         let worker = launch.create(name, values)?;
-        Ok(Box::new(Isolated { name, launch: launch.clone(), values: values.to_vec(), worker, frames: 0 }))
+        Ok(Box::new(Isolated { descriptor, launch: launch.clone(), values: values.to_vec(), worker, frames: 0 }))
     };
     let create = Box::new(create);
     Ok(Entry { descriptor, form: Form::Native, path: Some(path.to_owned()), sha256: Some(sha256), create })
@@ -82,7 +82,7 @@ impl Launch {
 
 /// A filter in a worker.
 struct Isolated {
-    name: &'static str,
+    descriptor: &'static Descriptor,
     launch: Launch,
     values: Vec<f64>,
     worker: Worker,
@@ -91,14 +91,15 @@ struct Isolated {
 
 impl Running for Isolated {
     fn process(&mut self, input: Frame<'_>, mut output: FrameMut<'_>) -> Result<()> {
-        let index = self.frames;
+        check_frames(self.descriptor, &input, &output)?;
+        let (index, name) = (self.frames, self.descriptor.name);
         self.frames += 1;
-        let crashed = |why: &str| failed("E-FILTER-CRASH", self.name, &format!("frame {index}: {why}"));
+        let crashed = |why: &str| failed("E-FILTER-CRASH", name, &format!("frame {index}: {why}"));
         let request = Request::Process { input, writes: output.format() };
         let mut reply = self.worker.ask(&request, FRAME);
         if reply.is_err() && !self.worker.late {
             // The same frame and parameters give the same output, so nothing is lost by asking another worker.
-            self.worker = self.launch.create(self.name, &self.values)?;
+            self.worker = self.launch.create(name, &self.values)?;
             reply = self.worker.ask(&request, FRAME);
         }
         match reply {
@@ -107,7 +108,7 @@ impl Running for Isolated {
                 Ok(())
             }
             Ok(Reply::Done(_)) => Err(crashed("its worker sent a frame of another size")),
-            Ok(Reply::Failed(words)) => Err(failed("E-FILTER", self.name, &words)),
+            Ok(Reply::Failed(words)) => Err(failed("E-FILTER", name, &words)),
             Ok(Reply::Panicked(words)) | Err(words) => Err(crashed(&words)),
         }
     }
