@@ -103,7 +103,7 @@ fn wasm(features: &str) -> Option<PathBuf> {
         return None;
     };
     let folder = folder(if features.is_empty() { "wasm" } else { "wasm-simd" });
-    let contract = self::folder("contract").join(format!("libfilter_api{features}.rlib"));
+    let contract = self::folder("contract").join(format!("libfilter_api-wasm{features}.rlib"));
     let command = |crate_type: &str, name: &str, source: &Path, out: &Path| {
         let mut command = Command::new(rustc);
         command.args(["--edition=2021", "-O", "--target=wasm32-unknown-unknown", "-Cpanic=abort", "-Cstrip=symbols"]);

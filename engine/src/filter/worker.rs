@@ -12,10 +12,10 @@ use filter_api::{Descriptor, Frame, FrameMut};
 
 use super::catalogue::{Entry, Form};
 use super::described::Described;
-use super::library;
 use super::running::{Running, check_frames, failed, refused};
 use super::trust::Trust;
 use super::wire::{Reply, Request, read_reply, write_request};
+use super::{library, native};
 use crate::diagnostic::{Diagnostic, Kind, Result, printable};
 
 /// How long a library may take to load, or to create an instance.
@@ -62,7 +62,12 @@ impl Launch {
         };
         let described = match worker.receive(START) {
             Ok(Reply::Done(described)) => described,
-            Ok(Reply::Failed(words) | Reply::Panicked(words)) => return Err(broken(printable(&words))),
+            Ok(Reply::Failed(words)) => {
+                let (what, help) = words.split_once('\n').unwrap_or((&words, ""));
+                let error = Diagnostic::new(Kind::Input, "E-NATIVE-ABI", printable(what));
+                return error.help(printable(help)).into();
+            }
+            Ok(Reply::Panicked(words)) => return Err(broken(printable(&words))),
             Err(why) => return Err(broken(why)),
         };
         let described = serde_json::from_slice(&described).map_err(|error| broken(error.to_string()))?;
@@ -199,8 +204,15 @@ pub fn serve(path: &Path, trust: &Trust) -> Result<()> {
     let mut output = replies_apart_from_prints().map_err(lost)?;
     let (bytes, _) = trust.read(path)?;
     library::check(path, &bytes)?;
-    let plugin = super::native::load(path, &bytes)?;
-    let described = super::native::describe(plugin, path)?;
+    let loaded = native::load(path, &bytes).and_then(|plugin| Ok((plugin, native::describe(plugin, path)?)));
+    let (plugin, described) = match loaded {
+        Ok(loaded) => loaded,
+        Err(error) => {
+            let words = format!("{}\n{}", error.message, error.help.as_deref().unwrap_or_default());
+            super::wire::write_reply(&mut output, &Reply::Failed(words)).map_err(lost)?;
+            return Err(error);
+        }
+    };
     let words = serde_json::to_vec(&described).unwrap_or_default();
     super::wire::write_reply(&mut output, &Reply::Done(words)).map_err(lost)?;
     super::wire::serve(&mut std::io::stdin().lock(), &mut output, plugin).map_err(lost)

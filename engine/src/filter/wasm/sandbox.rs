@@ -216,6 +216,8 @@ impl Running for Sandboxed {
         };
         let [(from_address, _), (to_address, _)] = self.pixels;
         guest.write(from_address, input.pixels())?;
+        // What the filter leaves out is what stood there, as in every form; a module must not keep frames by it.
+        guest.write(to_address, to)?;
         guest.write(self.frames, frame(input.format(), from_address).as_flattened())?;
         guest.write(self.frames + FRAME_BYTES, frame(writes, to_address).as_flattened())?;
         guest.write(self.message, &[0])?;
