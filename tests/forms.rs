@@ -1,6 +1,7 @@
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::time::Instant;
 
 use engine::experiment::{Overrides, Plan, learn};
 use engine::filter::{Catalogue, Chain};
@@ -133,4 +134,39 @@ fn a_script_uses_the_example_in_c_in_both_forms_with_one_result() {
     });
     let hashes: Vec<String> = hashes.collect();
     assert!(hashes.windows(2).all(|pair| pair[0] == pair[1]), "{hashes:?}");
+}
+
+/// Microseconds of one frame through each chain: the least of many rounds, in which all take turns.
+fn cost_us(chains: &mut [Chain], image: &Image) -> Vec<f64> {
+    let mut least = vec![f64::INFINITY; chains.len()];
+    for _ in 0..100 {
+        for (chain, least) in chains.iter_mut().zip(&mut least) {
+            let started = Instant::now();
+            (0..50).for_each(|_| drop(chain.apply(image).unwrap().first()));
+            *least = least.min(started.elapsed().as_secs_f64() * 1e6 / 50.0);
+        }
+    }
+    least
+}
+
+/// Times are compared only where somebody asked for it, with `ENGINE_LONG` in the environment: they need a quiet machine.
+#[test]
+fn a_loaded_filter_costs_little_more_than_one_that_is_linked_in() {
+    let most = [("native", 1.05), ("WebAssembly with vectors", 4.0), ("WebAssembly", 10.0)];
+    let forms: Vec<_> = forms().into_iter().filter(|(form, _)| *form != "native and isolated").collect();
+    let size = (160, 120);
+    let mut chains = vec![chain(&Catalogue::linked_in(), size, 60.0)];
+    chains.extend(forms.iter().map(|(_, catalogue)| chain(catalogue, size, 60.0)));
+    let image = noise(&mut Random::new(4, Stream::Camera), size);
+    if std::env::var_os("ENGINE_LONG").is_none() {
+        let masks: Vec<_> = chains.iter_mut().map(|chain| chain.apply(&image).unwrap().to_vec()).collect();
+        return assert!(masks.windows(2).all(|pair| pair[0] == pair[1]));
+    }
+    let costs = cost_us(&mut chains, &image);
+    println!("linked in: {:.2} us", costs[0]);
+    for ((form, _), cost) in forms.iter().zip(&costs[1..]) {
+        println!("{form}: {cost:.2} us, {:.2} times", cost / costs[0]);
+        let (_, most) = most.iter().find(|(name, _)| name == form).unwrap();
+        assert!(cost / costs[0] <= *most, "{form}: more than {most} times");
+    }
 }
