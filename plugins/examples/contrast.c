@@ -17,8 +17,8 @@ static uint32_t brightness(const uint8_t *pixel, uint32_t format) {
     return (77u * pixel[0] + 150u * pixel[1] + 29u * pixel[2]) >> 8;
 }
 
-/* The one parameter fits into the pointer that stands for the instance, so nothing must be allocated or freed; it is 1
- * or more, so the pointer is never NULL. A filter that keeps more would point at a struct of its own. */
+/* The one parameter fits into the pointer that stands for the instance, so nothing must be allocated or freed. A filter
+ * that keeps more would point at a struct of its own. */
 static int32_t create(const double *values, uint32_t count, void **instance, char *message) {
     (void)count; /* The host passes one value for each parameter, within its range. */
     (void)message;

@@ -92,9 +92,9 @@ typedef struct filter_plugin {
     uint32_t parameter_count;
     const filter_parameter *parameters;
 
-    /* Makes an instance from parameter_count finite values, in order and within their ranges. *instance must not
-     * become NULL: a filter that keeps nothing points it at any static. On failure it is left alone and the message,
-     * FILTER_MESSAGE_BYTES long, says why. */
+    /* Makes an instance from parameter_count finite values, in order and within their ranges. *instance may be set to
+     * NULL by a filter that keeps nothing. On failure it is left alone and the message, FILTER_MESSAGE_BYTES long, says
+     * why. */
     int32_t (*create)(const double *values, uint32_t count, void **instance, char *message);
 
     /* Writes every pixel of output, which is as wide and as high as input and has the format `writes`. */

@@ -153,6 +153,7 @@ pub(crate) fn exists(program: &str) -> bool {
 }
 
 /// Says what a test leaves out for want of a compiler.
+#[allow(clippy::print_stderr, reason = "nobody else would tell")]
 pub(crate) fn missing(what: &str) -> bool {
     assert!(std::env::var_os("ENGINE_COMPILERS").is_none_or(|words| words != "required"), "there is no {what}");
     eprintln!("skipped: there is no {what}");

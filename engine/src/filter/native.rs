@@ -114,9 +114,6 @@ fn text(raw: RawText) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// What is wrong with a filter that says it made an instance, and gives none.
-pub(super) const NO_INSTANCE: &str = "it made no instance, and did not say why";
-
 /// Why a call of a library did not succeed.
 #[derive(Debug, PartialEq)]
 pub(super) struct Failure {
@@ -147,9 +144,6 @@ impl Native {
         // SAFETY: the arguments are as the law says, and live through the call.
         let status = unsafe { create(values.as_ptr(), values.len() as u32, &raw mut instance, message.pointer()) };
         message.outcome(status)?;
-        if instance.is_null() {
-            return Err(Failure { panicked: true, words: NO_INSTANCE.to_owned() });
-        }
         Ok(Self { process, destroy, instance })
     }
 
