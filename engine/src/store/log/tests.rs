@@ -9,6 +9,7 @@ use sha2::{Digest, Sha256};
 use super::{DIGEST_BYTES, PREFIX_BYTES, RunLog, read_log};
 use crate::diagnostic::{Kind, Result, SourceText};
 use crate::experiment::{Ledger, Plan, learn_into, test_into};
+use crate::filter::Catalogue;
 use crate::reward::Behaviour;
 use crate::world::Layout;
 
@@ -32,9 +33,7 @@ static SAMPLE: LazyLock<Sample> = LazyLock::new(|| {
     let layout = Arc::new(Layout::parse(SourceText::new("log.toml", WORLD)).unwrap());
     let mut settings = behaviour.settings().clone();
     (settings.run.steps, settings.run.test_steps) = (1200, 40);
-    let plan =
-        Plan::with_layout(Arc::new(behaviour), settings, layout, Arc::new(crate::filter::Catalogue::linked_in()))
-            .unwrap();
+    let plan = Plan::with_layout(Arc::new(behaviour), settings, layout, Arc::new(Catalogue::linked_in())).unwrap();
     let (mut learning, mut test) = (Ledger::new(&plan, 1200), Ledger::new(&plan, 40));
     let stop = AtomicBool::new(false);
     let learned = learn_into(&plan, SEED, &stop, &|_| (), &mut learning).unwrap();
