@@ -187,6 +187,7 @@ fn another_reward_is_told_by_rule_and_by_state() {
     assert!(!changed.is_empty());
     for state in changed {
         assert_ne!(state["before"]["action"], state["after"]["action"]);
+        assert!(state["gain"].as_f64().unwrap() >= 0.0);
         let tried = |side: &str| state[side]["tried"].as_u64().unwrap();
         assert!(tried("before") + tried("after") <= state["visits"].as_u64().unwrap());
     }

@@ -30,7 +30,8 @@ struct Report {
 
 pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
     let topic = arguments.topic.to_uppercase();
-    if topic.starts_with("E-") || topic.starts_with("W-") {
+    let is_code = topic.starts_with("E-") || topic.starts_with("W-");
+    if is_code && !Path::new(&arguments.topic).exists() {
         if arguments.step.is_some() || arguments.test || arguments.out.is_some() {
             let error = Diagnostic::new(Kind::Usage, "E-CODE", "the page of a code has no steps and no pictures");
             return Err(Box::new(error.help(format!("write: engine explain {}", printable(&topic)))).into());

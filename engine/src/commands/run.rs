@@ -120,7 +120,8 @@ fn learn_all(
         if bar.is_hidden() && !plain {
             console.note(&format!("seed {seed}: {}", one_line(&summary)));
         }
-        Ok(SeedResult { learned, tested, summary, log })
+        folder.keep_log(plan, seed, &log, seeds.len() > 1)?;
+        Ok(SeedResult { learned, tested, summary })
     });
     bar.finish_and_clear();
     results

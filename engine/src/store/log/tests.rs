@@ -74,6 +74,15 @@ fn a_log_comes_back_as_it_was_written() {
 }
 
 #[test]
+fn a_log_that_holds_only_the_beginning_of_a_run_knows_how_long_the_run_was() {
+    let (shape, bytes) = (SAMPLE.log.learning.shape().clone(), SAMPLE.log.learning.bytes().to_vec());
+    let learning = Ledger::from_bytes(shape, bytes, 9_000_000).unwrap();
+    let file = RunLog { learning, test: SAMPLE.log.test.clone() }.to_bytes(&SAMPLE.plan, SEED, RUN).unwrap();
+    let read = read(&file).unwrap().learning;
+    assert_eq!((read.len(), read.steps()), (1200, 9_000_000));
+}
+
+#[test]
 fn the_last_digest_of_the_file_is_the_digest_of_the_log() {
     let tail = &SAMPLE.file[SAMPLE.file.len() - DIGEST_BYTES..];
     assert_eq!(super::hex(tail), SAMPLE.log.sha256());
