@@ -16,6 +16,8 @@ pub(super) struct SeedResult {
     pub(super) learned: Learned,
     pub(super) tested: TestRun,
     pub(super) summary: Summary,
+    /// Every step, of a run of one seed.
+    pub(super) log: Option<RunLog>,
 }
 
 /// A folder for one run, of one seed or many.

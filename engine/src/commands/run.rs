@@ -36,7 +36,7 @@ pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::resul
     let threads = arguments.threads.unwrap_or(0) as usize;
     let results = learn_all(&plan, &folder, &seeds, threads, &stop, console)?;
     folder.write(&plan, &results)?;
-    if let (Some(path), [SeedResult { log, .. }]) = (&arguments.record, results.as_slice()) {
+    if let (Some(path), [SeedResult { log: Some(log), .. }]) = (&arguments.record, results.as_slice()) {
         let phases = [(Phase::Learning, &log.learning), (Phase::Test, &log.test)];
         let recording = record(&plan, arguments.seed, &phases, arguments.record_every, path)?;
         console.note(&format!(
@@ -121,7 +121,8 @@ fn learn_all(
             console.note(&format!("seed {seed}: {}", one_line(&summary)));
         }
         folder.keep_log(plan, seed, &log, seeds.len() > 1)?;
-        Ok(SeedResult { learned, tested, summary })
+        let log = (seeds.len() == 1).then_some(log);
+        Ok(SeedResult { learned, tested, summary, log })
     });
     bar.finish_and_clear();
     results
