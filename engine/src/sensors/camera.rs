@@ -1,17 +1,21 @@
 //! The camera: draws what stands before it, visible faces first and colours afterwards.
 
+use super::canvas::{Canvas, Colours, Weights};
 use super::drawing::Drawing;
 use super::lens::Fisheye;
+use super::luma;
 use super::noise::PixelNoise;
 use super::observation::Image;
 use super::painting::{Drawn, Painter};
 use super::spans::Spans;
 use super::surface::Surfaces;
-use super::texture::{BATCH, Looks};
+use super::texture::{BATCH, Looks, Mark};
 use super::view::{Affine, Frustum, Pinhole, View};
 use crate::geometry::{Isometry3, Point3, Vector3};
 use crate::settings::CameraSettings;
 use crate::world::scene::{Scene, Solid};
+use dispatch::Processor;
+use filter_api::Format;
 use std::sync::Arc;
 
 /// Faces of movers for which there is room from the start.
@@ -40,11 +44,15 @@ pub struct Camera {
     surfaces: Surfaces,
     moving: Surfaces,
     looks: Looks,
-    standing_looks: (usize, usize),
+    standing_looks: Mark,
     spans: Spans,
     seen: Vec<usize>,
     drawn: Vec<Drawn>,
     nearness: Vec<Affine>,
+    processor: Processor,
+    /// What grey images are made from: the weighted sums of the colours, or colours that noise may cut off.
+    weights: Vec<u16>,
+    colours: Vec<u8>,
 }
 
 impl Camera {
@@ -68,7 +76,8 @@ impl Camera {
         let mut looks = Looks::default();
         looks.push_plain(SKY);
         looks.push(&parts.materials[parts.floor], &parts.light, &Vector3::z());
-        looks.push_plain([0; 3]);
+        let black = fisheye.as_ref().is_some_and(Fisheye::has_outside);
+        looks.push_plain(if black { [0; 3] } else { SKY });
         let mut faces = 0;
         for face in surfaces.faces() {
             faces += 1;
@@ -86,12 +95,15 @@ impl Camera {
             mount,
             surfaces,
             moving: Surfaces::with_room(),
-            standing_looks: looks.length(),
+            standing_looks: looks.mark(),
             looks,
             spans: Spans::new(pinhole.width_px, pinhole.height_px),
             seen: Vec::with_capacity(parts.solids.len()),
             drawn: Vec::with_capacity(faces + MOVING_FACES),
             nearness: Vec::with_capacity(faces + MOVING_FACES),
+            processor: Processor::best(),
+            weights: Vec::new(),
+            colours: Vec::new(),
         }
     }
 
@@ -106,23 +118,61 @@ impl Camera {
         self.frame = frames;
     }
 
-    /// Renders into `image`, which gets the camera's size. `world_from_robot` is the robot's base on the ground, x
-    /// forward; `moving` are the solids that do not belong to the scene, where they stand now.
+    /// Renders into `image`, which gets the camera's size and keeps its format, colour or grey; grey is the luma of the
+    /// same image in colour. `world_from_robot` is the robot's base on the ground, x forward; `moving` are the solids
+    /// that do not belong to the scene, where they stand now.
     pub fn render(&mut self, world_from_robot: &Isometry3, moving: &[Solid], image: &mut Image) {
-        if (image.width_px, image.height_px) != (self.width_px, self.height_px)
-            || image.pixels.len() != self.width_px * self.height_px * 3
+        let (width, height) = (self.width_px, self.height_px);
+        if (image.width_px, image.height_px) != (width, height)
+            || image.pixels.len() != width * height * image.format.channels()
         {
-            *image = Image::new(self.width_px, self.height_px);
+            *image = Image::of(image.format, width, height);
         }
         let view = self.view(world_from_robot);
         let frustum = view.frustum();
         self.place_movers(moving, &frustum);
         self.find_visible(&view, &frustum);
-        self.shade(image);
-        if let Some(noise) = &self.noise {
-            noise.add(self.frame, &mut image.pixels, self.width_px * 3);
+        if image.format == Format::Rgb {
+            self.paint(&mut image.pixels)
+        } else {
+            self.paint_grey(&mut image.pixels)
         }
         self.frame += 1;
+    }
+
+    /// Paints three bytes for each pixel.
+    fn paint(&self, pixels: &mut [u8]) {
+        self.shade(Colours(pixels));
+        if let Some(noise) = &self.noise {
+            noise.add(self.processor, self.frame, pixels, self.width_px * 3);
+        }
+    }
+
+    /// Paints one byte for each pixel.
+    fn paint_grey(&mut self, pixels: &mut [u8]) {
+        let most = self.noise.as_ref().map_or(0, PixelNoise::most);
+        if !self.looks.keep_within(most) {
+            // Noise is cut off at black and white channel by channel.
+            let mut colours = std::mem::take(&mut self.colours);
+            colours.resize(pixels.len() * 3, 0);
+            self.paint(&mut colours);
+            luma::of_colours(self.processor, &colours, pixels);
+            self.colours = colours;
+            return;
+        }
+        let mut weights = std::mem::take(&mut self.weights);
+        weights.resize(pixels.len(), 0);
+        self.shade(Weights(&mut weights));
+        match &self.noise {
+            None => luma::of_weights(self.processor, &weights, pixels),
+            Some(noise) => {
+                let rows = weights.chunks_exact(self.width_px).zip(pixels.chunks_exact_mut(self.width_px));
+                for (row, (weights, pixels)) in rows.enumerate() {
+                    luma::of_noisy_weights(self.processor, weights, noise.of_row(self.frame, row), pixels);
+                }
+            }
+        }
+        self.weights = weights;
     }
 
     fn view(&self, world_from_robot: &Isometry3) -> View {
@@ -183,12 +233,12 @@ impl Camera {
             }
         }
         for (index, face) in self.moving.faces().iter().enumerate() {
-            drawing.face(&self.moving, face, self.standing_looks.0 + index);
+            drawing.face(&self.moving, face, self.standing_looks.looks + index);
         }
     }
 
-    fn shade(&self, image: &mut Image) {
-        let mut painter = Painter::new(&mut image.pixels, &self.looks, &self.drawn, &self.nearness);
+    fn shade<C: Canvas>(&self, canvas: C) {
+        let mut painter = Painter::new(canvas, &self.looks, &self.drawn, &self.nearness);
         match &self.fisheye {
             None => self.shade_rows(&mut painter),
             Some(lens) => self.shade_through(lens, &mut painter),
@@ -196,11 +246,11 @@ impl Camera {
         painter.flush(self.width_px * self.height_px);
     }
 
-    fn shade_rows(&self, painter: &mut Painter) {
+    fn shade_rows<C: Canvas>(&self, painter: &mut Painter<'_, C>) {
         for row in 0..self.height_px {
             let base = row * self.width_px;
             let floor = self.floor(row);
-            let background = |painter: &mut Painter, from: usize, to: usize| {
+            let background = |painter: &mut Painter<'_, C>, from: usize, to: usize| {
                 let (first, last) = (floor.0.clamp(from, to), floor.1.clamp(from, to));
                 painter.stretch(SKY_FACE, base, row, (from, first));
                 painter.stretch(FLOOR_FACE, base, row, (first, last));
@@ -233,7 +283,7 @@ impl Camera {
         if left > 0.0 { (0, crossing) } else { (crossing, width) }
     }
 
-    fn shade_through(&self, lens: &Fisheye, painter: &mut Painter) {
+    fn shade_through<C: Canvas>(&self, lens: &Fisheye, painter: &mut Painter<'_, C>) {
         let mut first = 0;
         for (xs, ys) in lens.xs.chunks(self.width_px).zip(lens.ys.chunks(self.width_px)) {
             let mut column = 0;

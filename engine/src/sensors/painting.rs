@@ -1,5 +1,6 @@
 //! Turns visible faces into pixels, in the order of the image's memory.
 
+use super::canvas::Canvas;
 use super::texture::{BATCH, Look, Looks};
 use super::view::Affine;
 
@@ -12,22 +13,20 @@ pub(super) struct Drawn {
     pub(super) coordinates: [Affine; 2],
 }
 
-/// Writes an image from its first pixel to its last.
-///
-/// A stretch may be written too long, since what follows is written afterwards; so every write has a fixed length.
-pub(super) struct Painter<'a> {
-    pub(super) pixels: &'a mut [u8],
-    pub(super) looks: &'a Looks,
-    pub(super) drawn: &'a [Drawn],
-    pub(super) nearness: &'a [Affine],
-    /// A stretch of one plain face from `start` that is not written yet.
-    pub(super) pending: Option<u32>,
-    pub(super) start: usize,
+/// Paints an image from its first pixel to its last.
+pub(super) struct Painter<'a, C> {
+    canvas: C,
+    looks: &'a Looks,
+    drawn: &'a [Drawn],
+    nearness: &'a [Affine],
+    /// A stretch of one plain face from `start` that is not painted yet.
+    pending: Option<u32>,
+    start: usize,
 }
 
-impl<'a> Painter<'a> {
-    pub(super) fn new(pixels: &'a mut [u8], looks: &'a Looks, drawn: &'a [Drawn], nearness: &'a [Affine]) -> Self {
-        Self { pixels, looks, drawn, nearness, pending: None, start: 0 }
+impl<'a, C: Canvas> Painter<'a, C> {
+    pub(super) fn new(canvas: C, looks: &'a Looks, drawn: &'a [Drawn], nearness: &'a [Affine]) -> Self {
+        Self { canvas, looks, drawn, nearness, pending: None, start: 0 }
     }
 
     /// Pixels `from..to` of a row show `face`; `base` is the number of the row's first pixel.
@@ -90,31 +89,13 @@ impl<'a> Painter<'a> {
     fn batch(&mut self, look: &Look, first: usize, count: usize, (along, across): (&[f32; BATCH], &[f32; BATCH])) {
         let mut indices = [0; BATCH];
         look.choose(along, across, &mut indices);
-        let palette = self.looks.palette(look);
-        for (place, &index) in indices[..count].iter().enumerate() {
-            let byte = (first + place) * 3;
-            let colour = palette[usize::from(index)];
-            if let Some(pixel) = self.pixels.get_mut(byte..byte + 4) {
-                pixel.copy_from_slice(&colour);
-            } else if let Some(pixel) = self.pixels.get_mut(byte..byte + 3) {
-                pixel.copy_from_slice(&colour[..3]);
-            }
-        }
+        self.canvas.spots(self.looks, look, first, &indices[..count]);
     }
 
-    /// Writes the pending stretch up to pixel number `end`.
+    /// Paints the pending stretch up to pixel number `end`.
     pub(super) fn flush(&mut self, end: usize) {
         if let Some(face) = self.pending.take() {
-            let pattern = &self.look(face).pattern;
-            let (mut byte, last) = (self.start * 3, end * 3);
-            while byte < last {
-                if let Some(pixels) = self.pixels.get_mut(byte..byte + pattern.len()) {
-                    pixels.copy_from_slice(pattern);
-                } else if let Some(pixels) = self.pixels.get_mut(byte..) {
-                    pixels.copy_from_slice(&pattern[..pixels.len()]);
-                }
-                byte += pattern.len();
-            }
+            self.canvas.fill(self.look(face), self.start..end);
         }
         self.start = end;
     }

@@ -1,5 +1,6 @@
 //! How a lit surface looks: its colours, and which of them a place on it has.
 
+use super::luma::weight;
 use crate::geometry::Vector3;
 use crate::world::scene::{Light, Material, Texture};
 use std::sync::LazyLock;
@@ -7,7 +8,7 @@ use std::sync::LazyLock;
 /// Pixels that are textured at once.
 pub(super) const BATCH: usize = 32;
 /// Pixels in a prepared stretch of plain colour.
-const PATTERN_PX: usize = 16;
+pub(super) const PATTERN_PX: usize = 16;
 /// Lattice points of the noise texture along each axis; then it repeats.
 const LATTICE: usize = 128;
 
@@ -26,6 +27,8 @@ enum Choice {
 pub(super) struct Look {
     /// One stretch of the plain colour.
     pub(super) pattern: [u8; PATTERN_PX * 3],
+    /// The plain colour's weighted sum, 256 times its luma.
+    pub(super) weight: u16,
     choice: Choice,
     per_m: f32,
     /// First colour of this look in the palette.
@@ -37,6 +40,27 @@ pub(super) struct Look {
 pub(super) struct Looks {
     looks: Vec<Look>,
     palette: Vec<[u8; 4]>,
+    /// The same colours as weighted sums.
+    weights: Vec<u16>,
+    range: Extremes,
+}
+
+/// The least and the greatest byte of some colours.
+#[derive(Debug, Clone, Copy)]
+struct Extremes(u8, u8);
+
+/// How far a list of looks has come.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Mark {
+    pub(super) looks: usize,
+    colours: usize,
+    range: Extremes,
+}
+
+impl Default for Extremes {
+    fn default() -> Self {
+        Self(u8::MAX, 0)
+    }
 }
 
 impl Looks {
@@ -50,21 +74,34 @@ impl Looks {
         &self.palette[look.palette_start..]
     }
 
-    /// How many looks and colours there are.
-    pub(super) fn length(&self) -> (usize, usize) {
-        (self.looks.len(), self.palette.len())
+    /// The same as weighted sums.
+    pub(super) fn weights(&self, look: &Look) -> &[u16] {
+        &self.weights[look.palette_start..]
+    }
+
+    /// Whether every colour keeps so far from black and white that `most` may be added to it or taken from it.
+    pub(super) fn keep_within(&self, most: u8) -> bool {
+        self.range.0 >= most && self.range.1 <= u8::MAX - most
+    }
+
+    /// What there is now.
+    pub(super) fn mark(&self) -> Mark {
+        Mark { looks: self.looks.len(), colours: self.palette.len(), range: self.range }
     }
 
     /// Makes room for so many looks more.
     pub(super) fn reserve(&mut self, looks: usize) {
         self.looks.reserve(looks);
         self.palette.reserve(looks);
+        self.weights.reserve(looks);
     }
 
-    /// Forgets all but the first looks and colours.
-    pub(super) fn truncate(&mut self, (looks, colours): (usize, usize)) {
-        self.looks.truncate(looks);
-        self.palette.truncate(colours);
+    /// Forgets what came after a mark.
+    pub(super) fn truncate(&mut self, mark: Mark) {
+        self.looks.truncate(mark.looks);
+        self.palette.truncate(mark.colours);
+        self.weights.truncate(mark.colours);
+        self.range = mark.range;
     }
 
     /// Adds one plain colour.
@@ -74,7 +111,22 @@ impl Looks {
             pixel.copy_from_slice(&colour);
         }
         let palette_start = self.palette.len();
-        self.looks.push(Look { pattern, choice: Choice::Plain, per_m: 0.0, palette_start });
+        let weight = weight(colour);
+        self.looks.push(Look { pattern, weight, choice: Choice::Plain, per_m: 0.0, palette_start });
+        self.widen(colour);
+    }
+
+    fn widen(&mut self, colour: [u8; 3]) {
+        let [red, green, blue] = colour;
+        self.range.0 = self.range.0.min(red).min(green).min(blue);
+        self.range.1 = self.range.1.max(red).max(green).max(blue);
+    }
+
+    fn push_colour(&mut self, colour: [u8; 3]) {
+        let [red, green, blue] = colour;
+        self.palette.push([red, green, blue, 0]);
+        self.weights.push(weight(colour));
+        self.widen(colour);
     }
 
     /// Adds the look of a material on a surface with the unit normal `normal`.
@@ -95,15 +147,11 @@ impl Looks {
         if let Some(look) = self.looks.last_mut() {
             (look.choice, look.per_m) = (choice, (1.0 / scale_m) as f32);
         }
-        let word = |by: f64| {
-            let [red, green, blue] = lighter(by);
-            [red, green, blue, 0]
-        };
         if let Choice::Noise(amplitude) = choice {
             let most = amplitude as i32;
-            self.palette.extend((-most..=most).map(|by| word(f64::from(by))));
+            (-most..=most).for_each(|by| self.push_colour(lighter(f64::from(by))));
         } else {
-            self.palette.extend([word(amplitude), word(-amplitude)]);
+            [amplitude, -amplitude].into_iter().for_each(|by| self.push_colour(lighter(by)));
         }
     }
 }
