@@ -6,10 +6,11 @@ use super::lens::Fisheye;
 use super::luma;
 use super::noise::PixelNoise;
 use super::observation::Image;
-use super::painting::{Drawn, Painter};
+use super::painting::{Drawn, Painting};
 use super::spans::Spans;
+use super::stretches::{FLOOR_FACE, OUTSIDE_LENS, SKY_FACE, Sight, Stretches};
 use super::surface::Surfaces;
-use super::texture::{BATCH, Looks, Mark};
+use super::texture::{Looks, Mark};
 use super::view::{Affine, Frustum, Pinhole, View};
 use crate::geometry::{Isometry3, Point3, Vector3};
 use crate::settings::CameraSettings;
@@ -22,10 +23,6 @@ use std::sync::Arc;
 const MOVING_FACES: usize = 256;
 /// What is seen where there is nothing.
 const SKY: [u8; 3] = [186, 198, 210];
-/// Numbers of the three things that are always there, among drawn faces and looks alike.
-const SKY_FACE: u32 = 0;
-const FLOOR_FACE: u32 = 1;
-const OUTSIDE_LENS: u32 = 2;
 
 /// A colour camera fixed to the robot, with a pinhole or an equidistant fisheye lens.
 ///
@@ -46,6 +43,7 @@ pub struct Camera {
     looks: Looks,
     standing_looks: Mark,
     spans: Spans,
+    stretches: Stretches,
     seen: Vec<usize>,
     drawn: Vec<Drawn>,
     nearness: Vec<Affine>,
@@ -98,6 +96,7 @@ impl Camera {
             standing_looks: looks.mark(),
             looks,
             spans: Spans::new(pinhole.width_px, pinhole.height_px),
+            stretches: Stretches::with_room(height_px),
             seen: Vec::with_capacity(parts.solids.len()),
             drawn: Vec::with_capacity(faces + MOVING_FACES),
             nearness: Vec::with_capacity(faces + MOVING_FACES),
@@ -132,6 +131,7 @@ impl Camera {
         let frustum = view.frustum();
         self.place_movers(moving, &frustum);
         self.find_visible(&view, &frustum);
+        self.list();
         if image.format == Format::Rgb {
             self.paint(&mut image.pixels)
         } else {
@@ -140,9 +140,33 @@ impl Camera {
         self.frame += 1;
     }
 
+    /// Lists what the pixels show.
+    fn list(&mut self) {
+        let floor = self.nearness[FLOOR_FACE as usize];
+        let sight = Sight { pinhole: self.pinhole, spans: &self.spans, floor };
+        let (looks, drawn) = (&self.looks, &self.drawn);
+        let is_plain = |face: u32| looks.get(drawn[face as usize].look).is_plain();
+        match &self.fisheye {
+            None => self.stretches.see(&sight, is_plain),
+            Some(lens) => self.stretches.see_through(lens, self.width_px, &sight, is_plain),
+        }
+    }
+
+    fn paint_on<C: Canvas>(&self, canvas: C) {
+        self.processor.run(Painting {
+            canvas,
+            stretches: &self.stretches,
+            looks: &self.looks,
+            drawn: &self.drawn,
+            nearness: &self.nearness,
+            size_px: [self.width_px, self.height_px],
+            lens: self.fisheye.as_ref(),
+        });
+    }
+
     /// Paints three bytes for each pixel.
     fn paint(&self, pixels: &mut [u8]) {
-        self.shade(Colours(pixels));
+        self.paint_on(Colours(pixels));
         if let Some(noise) = &self.noise {
             noise.add(self.processor, self.frame, pixels, self.width_px * 3);
         }
@@ -151,7 +175,7 @@ impl Camera {
     /// Paints one byte for each pixel.
     fn paint_grey(&mut self, pixels: &mut [u8]) {
         let most = self.noise.as_ref().map_or(0, PixelNoise::most);
-        if !self.looks.keep_within(most) {
+        if !self.looks.keep_within(most.max(1)) {
             // Noise is cut off at black and white channel by channel.
             let mut colours = std::mem::take(&mut self.colours);
             colours.resize(pixels.len() * 3, 0);
@@ -162,7 +186,7 @@ impl Camera {
         }
         let mut weights = std::mem::take(&mut self.weights);
         weights.resize(pixels.len(), 0);
-        self.shade(Weights(&mut weights));
+        self.paint_on(Weights(&mut weights));
         match &self.noise {
             None => luma::of_weights(self.processor, &weights, pixels),
             Some(noise) => {
@@ -234,80 +258,6 @@ impl Camera {
         }
         for (index, face) in self.moving.faces().iter().enumerate() {
             drawing.face(&self.moving, face, self.standing_looks.looks + index);
-        }
-    }
-
-    fn shade<C: Canvas>(&self, canvas: C) {
-        let mut painter = Painter::new(canvas, &self.looks, &self.drawn, &self.nearness);
-        match &self.fisheye {
-            None => self.shade_rows(&mut painter),
-            Some(lens) => self.shade_through(lens, &mut painter),
-        }
-        painter.flush(self.width_px * self.height_px);
-    }
-
-    fn shade_rows<C: Canvas>(&self, painter: &mut Painter<'_, C>) {
-        for row in 0..self.height_px {
-            let base = row * self.width_px;
-            let floor = self.floor(row);
-            let background = |painter: &mut Painter<'_, C>, from: usize, to: usize| {
-                let (first, last) = (floor.0.clamp(from, to), floor.1.clamp(from, to));
-                painter.stretch(SKY_FACE, base, row, (from, first));
-                painter.stretch(FLOOR_FACE, base, row, (first, last));
-                painter.stretch(SKY_FACE, base, row, (last, to));
-            };
-            let mut from = 0;
-            for run in self.spans.row(row) {
-                let (start, end) = (usize::from(run.start), usize::from(run.end));
-                background(painter, from, start);
-                painter.stretch(run.face, base, row, (start, end));
-                from = end;
-            }
-            background(painter, from, self.width_px);
-        }
-    }
-
-    /// The pixels of a row below the horizon.
-    fn floor(&self, row: usize) -> (usize, usize) {
-        let nearness = &self.nearness[FLOOR_FACE as usize];
-        let width = self.pinhole.width_px;
-        let at = |pixel: f64| nearness.at(pixel, row as f64 + 0.5);
-        let (left, right) = (at(0.5), at(width as f64 - 0.5));
-        if left > 0.0 && right > 0.0 {
-            return (0, width);
-        }
-        if left <= 0.0 && right <= 0.0 {
-            return (0, 0);
-        }
-        let crossing = (-at(0.0) / nearness.0[0] + 0.5).clamp(0.0, width as f64) as usize;
-        if left > 0.0 { (0, crossing) } else { (crossing, width) }
-    }
-
-    fn shade_through<C: Canvas>(&self, lens: &Fisheye, painter: &mut Painter<'_, C>) {
-        let mut first = 0;
-        for (xs, ys) in lens.xs.chunks(self.width_px).zip(lens.ys.chunks(self.width_px)) {
-            let mut column = 0;
-            while column < xs.len() {
-                let face = self.seen_at(xs[column], ys[column]);
-                let most = xs.len().min(column + BATCH);
-                let same = (column + 1..most).find(|&next| self.seen_at(xs[next], ys[next]) != face).unwrap_or(most);
-                painter.scattered(face, first + column, &xs[column..same], &ys[column..same]);
-                column = same;
-            }
-            first += xs.len();
-        }
-    }
-
-    /// The face at a place of the pinhole view.
-    fn seen_at(&self, x: f32, y: f32) -> u32 {
-        if x.is_nan() {
-            return OUTSIDE_LENS;
-        }
-        let (column, row) = (x as u16, y as usize);
-        match self.spans.row(row).iter().find(|run| column < run.end) {
-            Some(run) if run.start <= column => run.face,
-            _ if self.nearness[FLOOR_FACE as usize].at(f64::from(x), f64::from(y)) > 0.0 => FLOOR_FACE,
-            _ => SKY_FACE,
         }
     }
 }

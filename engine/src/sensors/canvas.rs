@@ -18,10 +18,12 @@ pub(super) trait Canvas {
 pub(super) struct Colours<'a>(pub(super) &'a mut [u8]);
 
 impl Canvas for Colours<'_> {
+    #[inline(always)]
     fn fill(&mut self, look: &Look, pixels: Range<usize>) {
         write_over(self.0, &look.pattern, 3 * pixels.start..3 * pixels.end);
     }
 
+    #[inline(always)]
     fn spots(&mut self, looks: &Looks, look: &Look, first: usize, indices: &[u8]) {
         let palette = looks.palette(look);
         for (place, &index) in indices.iter().enumerate() {
@@ -40,19 +42,22 @@ impl Canvas for Colours<'_> {
 pub(super) struct Weights<'a>(pub(super) &'a mut [u16]);
 
 impl Canvas for Weights<'_> {
+    #[inline(always)]
     fn fill(&mut self, look: &Look, pixels: Range<usize>) {
         write_over(self.0, &[look.weight; 2 * PATTERN_PX], pixels);
     }
 
-    fn spots(&mut self, looks: &Looks, look: &Look, first: usize, indices: &[u8]) {
-        let palette = looks.weights(look);
+    #[inline(always)]
+    fn spots(&mut self, _: &Looks, look: &Look, first: usize, indices: &[u8]) {
+        let [start, step] = look.weights;
         for (pixel, index) in self.0[first..first + indices.len()].iter_mut().zip(indices) {
-            *pixel = palette[usize::from(*index)];
+            *pixel = start.wrapping_add(step.wrapping_mul(u16::from(*index)));
         }
     }
 }
 
 /// Repeats `pattern` until `range` is covered.
+#[inline(always)]
 fn write_over<T: Copy, const LENGTH: usize>(memory: &mut [T], pattern: &[T; LENGTH], range: Range<usize>) {
     let mut at = range.start;
     while at < range.end {

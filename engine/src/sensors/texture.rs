@@ -29,6 +29,9 @@ pub(super) struct Look {
     pub(super) pattern: [u8; PATTERN_PX * 3],
     /// The plain colour's weighted sum, 256 times its luma.
     pub(super) weight: u16,
+    /// The weighted sum of the first colour in the palette, and how much more that of each next one is; true unless a
+    /// colour is black or white in some channel.
+    pub(super) weights: [u16; 2],
     choice: Choice,
     per_m: f32,
     /// First colour of this look in the palette.
@@ -40,8 +43,6 @@ pub(super) struct Look {
 pub(super) struct Looks {
     looks: Vec<Look>,
     palette: Vec<[u8; 4]>,
-    /// The same colours as weighted sums.
-    weights: Vec<u16>,
     range: Extremes,
 }
 
@@ -65,6 +66,7 @@ impl Default for Extremes {
 
 impl Looks {
     /// The look with this index.
+    #[inline(always)]
     pub(super) fn get(&self, index: usize) -> &Look {
         &self.looks[index]
     }
@@ -74,12 +76,7 @@ impl Looks {
         &self.palette[look.palette_start..]
     }
 
-    /// The same as weighted sums.
-    pub(super) fn weights(&self, look: &Look) -> &[u16] {
-        &self.weights[look.palette_start..]
-    }
-
-    /// Whether every colour keeps so far from black and white that `most` may be added to it or taken from it.
+    /// Whether every channel keeps so far from black and white that `most` may be added to it or taken from it.
     pub(super) fn keep_within(&self, most: u8) -> bool {
         self.range.0 >= most && self.range.1 <= u8::MAX - most
     }
@@ -93,14 +90,12 @@ impl Looks {
     pub(super) fn reserve(&mut self, looks: usize) {
         self.looks.reserve(looks);
         self.palette.reserve(looks);
-        self.weights.reserve(looks);
     }
 
     /// Forgets what came after a mark.
     pub(super) fn truncate(&mut self, mark: Mark) {
         self.looks.truncate(mark.looks);
         self.palette.truncate(mark.colours);
-        self.weights.truncate(mark.colours);
         self.range = mark.range;
     }
 
@@ -112,7 +107,7 @@ impl Looks {
         }
         let palette_start = self.palette.len();
         let weight = weight(colour);
-        self.looks.push(Look { pattern, weight, choice: Choice::Plain, per_m: 0.0, palette_start });
+        self.looks.push(Look { pattern, weight, weights: [0; 2], choice: Choice::Plain, per_m: 0.0, palette_start });
         self.widen(colour);
     }
 
@@ -125,7 +120,6 @@ impl Looks {
     fn push_colour(&mut self, colour: [u8; 3]) {
         let [red, green, blue] = colour;
         self.palette.push([red, green, blue, 0]);
-        self.weights.push(weight(colour));
         self.widen(colour);
     }
 
@@ -144,14 +138,18 @@ impl Looks {
                 (Choice::Noise(amplitude as f32), amplitude, scale_m)
             }
         };
-        if let Some(look) = self.looks.last_mut() {
-            (look.choice, look.per_m) = (choice, (1.0 / scale_m) as f32);
-        }
         if let Choice::Noise(amplitude) = choice {
             let most = amplitude as i32;
             (-most..=most).for_each(|by| self.push_colour(lighter(f64::from(by))));
         } else {
             [amplitude, -amplitude].into_iter().for_each(|by| self.push_colour(lighter(by)));
+        }
+        if let Some(look) = self.looks.last_mut() {
+            (look.choice, look.per_m) = (choice, (1.0 / scale_m) as f32);
+            let of = |index: usize| {
+                self.palette.get(look.palette_start + index).map_or(0, |[r, g, b, _]| weight([*r, *g, *b]))
+            };
+            look.weights = [of(0), of(1).wrapping_sub(of(0))];
         }
     }
 }
@@ -160,6 +158,7 @@ impl Looks {
 const TO_WHOLE: f32 = 12_582_912.0;
 
 /// The whole number below `value`, as bits and as a number. Only its low bits mean something far from the origin.
+#[inline(always)]
 fn floor(value: f32) -> (u32, f32) {
     let shifted = (value - 0.5) + TO_WHOLE;
     (shifted.to_bits(), shifted - TO_WHOLE)
@@ -167,11 +166,13 @@ fn floor(value: f32) -> (u32, f32) {
 
 impl Look {
     /// Whether one colour is all there is.
+    #[inline(always)]
     pub(super) fn is_plain(&self) -> bool {
         self.choice == Choice::Plain
     }
 
     /// The colour of each place: its index in this look's palette. Places in metres along the surface's two axes.
+    #[inline(always)]
     pub(super) fn choose(&self, along: &[f32; BATCH], across: &[f32; BATCH], indices: &mut [u8; BATCH]) {
         match self.choice {
             Choice::Plain => *indices = [0; BATCH],
@@ -190,6 +191,7 @@ impl Look {
     }
 
     /// Value noise: the lattice's values, blended smoothly.
+    #[inline(always)]
     fn noise(&self, amplitude: f32, along: &[f32; BATCH], across: &[f32; BATCH], indices: &mut [u8; BATCH]) {
         let lattice = lattice();
         let mut cells = [0_u32; BATCH];
@@ -203,7 +205,7 @@ impl Look {
         }
         let mut corners = [0_u32; BATCH];
         for (corners, cell) in corners.iter_mut().zip(cells) {
-            *corners = lattice[cell as usize];
+            *corners = lattice[cell as usize % (LATTICE * LATTICE)];
         }
         for place in 0..BATCH {
             let (right, up) = (shares[0][place], shares[1][place]);
@@ -219,6 +221,7 @@ impl Look {
 }
 
 /// 3 t^2 - 2 t^3: level at both ends.
+#[inline(always)]
 fn smooth(share: f32) -> f32 {
     share * share * (3.0 - 2.0 * share)
 }
