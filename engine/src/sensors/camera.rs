@@ -144,8 +144,8 @@ impl Camera {
     fn list(&mut self) {
         let floor = self.nearness[FLOOR_FACE as usize];
         let sight = Sight { pinhole: self.pinhole, spans: &self.spans, floor };
-        let (looks, drawn) = (&self.looks, &self.drawn);
-        let is_plain = |face: u32| looks.get(drawn[face as usize].look).is_plain();
+        let drawn = &self.drawn;
+        let is_plain = |face: u32| drawn[face as usize].plain;
         match &self.fisheye {
             None => self.stretches.see(&sight, is_plain),
             Some(lens) => self.stretches.see_through(lens, self.width_px, &sight, is_plain),
@@ -229,7 +229,12 @@ impl Camera {
         self.drawn.clear();
         self.nearness.clear();
         for look in [SKY_FACE, FLOOR_FACE, OUTSIDE_LENS] {
-            self.drawn.push(Drawn { look: look as usize, coordinates: [Affine::default(); 2] });
+            let look = look as usize;
+            self.drawn.push(Drawn {
+                look,
+                plain: self.looks.get(look).is_plain(),
+                coordinates: [Affine::default(); 2],
+            });
             self.nearness.push(Affine::default());
         }
         if let Some(nearness) = view.nearness(&Vector3::z(), 0.0) {

@@ -61,8 +61,8 @@ impl Canvas for Weights<'_> {
 fn write_over<T: Copy, const LENGTH: usize>(memory: &mut [T], pattern: &[T; LENGTH], range: Range<usize>) {
     let mut at = range.start;
     while at < range.end {
-        if let Some(part) = memory.get_mut(at..at + LENGTH) {
-            part.copy_from_slice(pattern);
+        if let Some(part) = memory.get_mut(at..).and_then(<[T]>::first_chunk_mut) {
+            *part = *pattern;
         } else if let Some(part) = memory.get_mut(at..) {
             part.copy_from_slice(&pattern[..part.len()]);
         }

@@ -12,6 +12,8 @@ use dispatch::Work;
 pub(super) struct Drawn {
     /// Index of its look.
     pub(super) look: usize,
+    /// Whether one colour is all there is.
+    pub(super) plain: bool,
     /// Texture coordinates times nearness; nothing for a plain look.
     pub(super) coordinates: [Affine; 2],
 }
@@ -78,11 +80,12 @@ impl<C: Canvas> Painting<'_, C> {
         let starts = affine.map(|value| value.at(column as f64 + 0.5, row as f64 + 0.5) as f32);
         let steps = affine.map(|value| value.0[0] as f32);
         let mut places = [[0.0; BATCH]; 2];
-        for place in 0..BATCH {
+        let [us, vs] = &mut places;
+        for (place, (u, v)) in us.iter_mut().zip(vs).enumerate() {
             let step = place as f32;
             let distance = 1.0 / (starts[2] + step * steps[2]);
-            places[0][place] = (starts[0] + step * steps[0]) * distance;
-            places[1][place] = (starts[1] + step * steps[1]) * distance;
+            *u = (starts[0] + step * steps[0]) * distance;
+            *v = (starts[1] + step * steps[1]) * distance;
         }
         places
     }
