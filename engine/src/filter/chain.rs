@@ -84,7 +84,7 @@ impl Chain {
     /// What its first filter likes best, colour or grey: the mask of an image in this format is that of its colours.
     #[must_use]
     pub fn likes(&self) -> Format {
-        self.stages.first().and_then(|stage| stage.plugin.descriptor.reads.first()).copied().unwrap_or(Format::Rgb)
+        self.stages.first().and_then(|stage| stage.descriptor.reads.first()).copied().unwrap_or(Format::Rgb)
     }
 
     /// The mask of an image: one byte for each pixel, 0 or 255.
@@ -271,17 +271,14 @@ mod tests {
         let (mut image, mut grey) = (Image::new(16, 12), Image::of(Format::Grey, 16, 12));
         image.pixels.fill_with(|| random.below(256) as u8);
         image.frame().unwrap().write_luma(&mut grey.pixels).unwrap();
-        let mut found = 0;
-        for plugin in registry::built_in().iter().filter(|plugin| plugin.descriptor.reads[0] == Format::Grey) {
-            let ends_in_mask = plugin.descriptor.writes == Format::Mask;
-            let stages = [stage(plugin.descriptor.name, &[]), stage("threshold", &[])];
-            let mut chain = Chain::new(&stages[..if ends_in_mask { 1 } else { 2 }], 16, 12).unwrap();
+        let catalogue = Catalogue::linked_in();
+        for name in ["blur", "scharr", "sobel", "threshold"] {
+            let stages = [stage(name, &[]), stage("threshold", &[])];
+            let mut chain = Chain::new(&stages[..if name == "blur" { 2 } else { 1 }], 16, 12, &catalogue).unwrap();
             assert_eq!(chain.likes(), Format::Grey);
             let of_colours = chain.apply(&image).unwrap().to_vec();
-            assert_eq!(chain.apply(&grey).unwrap(), of_colours, "{}", plugin.descriptor.name);
-            found += 1;
+            assert_eq!(chain.apply(&grey).unwrap(), of_colours, "{name}");
         }
-        assert_eq!(found, 4);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use engine::diagnostic::Result;
-use engine::experiment::{Plan, WINDOW_STEPS, in_parallel, learn};
+use engine::experiment::{Ledger, Plan, WINDOW_STEPS, in_parallel, learn_into};
 
 use super::stages::{SAMPLES, STAGES, Stages};
 use super::workload::empty_cycle;
@@ -23,7 +23,7 @@ pub(super) struct StageTime {
     pub(super) us: f64,
 }
 
-/// Learns once with each of the first seeds, on as many threads, and lists the microseconds of a step in each window.
+/// Learns once with each of the first seeds, with log, on as many threads, and lists the microseconds of a step in each window.
 ///
 /// # Errors
 /// If a sensor, a filter or the script fails.
@@ -33,7 +33,7 @@ pub(super) fn learn_on(plan: &Plan, threads: usize) -> Result<Vec<f64>> {
     let windows = in_parallel(&seeds, threads, |seed| {
         let ends = Mutex::new(Vec::new());
         let note = |_| ends.lock().unwrap_or_else(PoisonError::into_inner).push(Instant::now());
-        learn(plan, seed, &stop, &note)?;
+        learn_into(plan, seed, &stop, &note, &mut Ledger::new(plan, plan.settings.run.steps))?.whole()?;
         let ends = ends.into_inner().unwrap_or_else(PoisonError::into_inner);
         let us = |pair: &[Instant]| (pair[1] - pair[0]).as_secs_f64() * 1e6 / WINDOW_STEPS as f64;
         Ok(ends.windows(2).map(us).collect::<Vec<_>>())

@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::sync::Arc;
 
 use engine::diagnostic::{Diagnostic, Kind, Result};
-use engine::experiment::{Cycle, Plan};
+use engine::experiment::{Cycle, Ledger, Plan, Step};
 use engine::filter::Chain;
 use engine::geometry::{Isometry3, Pose};
 use engine::learner::{Learner, Transition};
@@ -21,11 +21,14 @@ pub(crate) const SAMPLES: usize = 64;
 /// Steps between two samples: far enough that they differ.
 const SPACING: usize = 16;
 
+/// Steps in a log, before the next one begins.
+const LOGGED: u64 = 4096;
+
 /// One stage: its name, and what does it once on the situation with the number given, below [`SAMPLES`].
 pub(crate) type Stage = (&'static str, fn(&mut Stages, usize));
 
 /// In the order of a step.
-pub(crate) const STAGES: [Stage; 7] = [
+pub(crate) const STAGES: [Stage; 8] = [
     ("physics", Stages::physics),
     ("camera", Stages::camera),
     ("laser", Stages::laser),
@@ -33,6 +36,7 @@ pub(crate) const STAGES: [Stage; 7] = [
     ("state", Stages::state),
     ("script", Stages::script),
     ("learner", Stages::learner),
+    ("log", Stages::log),
 ];
 
 /// Everything that a step needs, with situations to use it on.
@@ -48,6 +52,10 @@ pub(crate) struct Stages {
     grid: Grid,
     judge: Judge,
     learner: Learner,
+    cycle: Cycle<SimulatedRobot>,
+    step: Step,
+    ledger: Ledger,
+    logged: u64,
     failure: Option<Box<Diagnostic>>,
 }
 
@@ -73,6 +81,7 @@ impl Stages {
         judge.facts_mut().clone_from(&samples[0].facts);
         judge.calibrate()?;
         let random = Random::new(1, Stream::Learner);
+        let mut cycle = Cycle::new(plan, SimulatedRobot::new(layout, settings, 1)?)?;
         Ok(Self {
             world: World::new(Arc::clone(layout), &settings.robot, settings.run.period_s, 1),
             camera: Camera::new(&layout.scene, &settings.camera, 1),
@@ -83,6 +92,10 @@ impl Stages {
             learner: Learner::new(&settings.learner, grid.states(), settings.actions.len(), random),
             grid,
             judge,
+            step: cycle.step(0)?,
+            cycle,
+            ledger: Ledger::new(plan, LOGGED),
+            logged: 0,
             failure: None,
             samples,
             plan: plan.clone(),
@@ -129,6 +142,14 @@ impl Stages {
         if let Err(error) = black_box(self.judge.judge()) {
             self.failure = Some(error);
         }
+    }
+
+    fn log(&mut self, _: usize) {
+        if self.logged == LOGGED {
+            (self.ledger, self.logged) = (Ledger::new(&self.plan, LOGGED), 0);
+        }
+        self.logged += 1;
+        black_box(&mut self.ledger).add(black_box(&self.cycle), &self.step, false);
     }
 
     fn learner(&mut self, index: usize) {

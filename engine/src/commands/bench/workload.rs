@@ -43,7 +43,7 @@ pub(super) fn plan(arguments: &BenchArguments) -> Result<Plan> {
         test_steps: None,
         set,
     };
-    let plan = Plan::new(behaviour, &overrides)?;
+    let plan = Plan::with_filters(behaviour, &overrides, crate::commands::sources::catalogue(&arguments.filters)?)?;
     if !plan.settings.policies.is_empty() {
         let message = format!("'{}' combines policies and learns nothing", plan.behaviour.name());
         return Diagnostic::new(Kind::Usage, "E-POLICY", message).help("measure a behaviour that learns").into();
@@ -60,7 +60,7 @@ pub(super) fn textured(mut plan: Plan) -> Result<Plan> {
     let mut layout = (*plan.layout).clone();
     layout.scene = Arc::new(Scene::new(parts));
     plan.settings.camera.noise = plan.settings.camera.noise.max(PIXEL_NOISE);
-    Plan::with_layout(plan.behaviour, plan.settings, Arc::new(layout))
+    Plan::with_layout(plan.behaviour, plan.settings, Arc::new(layout), plan.filters)
 }
 
 /// The same with boxes far away, so that there are `solids` in all.
@@ -73,7 +73,7 @@ pub(super) fn with_boxes(plan: &Plan, solids: usize) -> Result<Plan> {
         let _ = write!(text, "\n[[box]]\ncentre_m = [{x_m}, {y_m}, 0.5]\nsize_m = [0.5, 0.5, 1]\n");
     }
     let layout = Layout::parse(SourceText::new(&plan.layout.source.path, text))?;
-    Plan::with_layout(Arc::clone(&plan.behaviour), plan.settings.clone(), Arc::new(layout))
+    Plan::with_layout(Arc::clone(&plan.behaviour), plan.settings.clone(), Arc::new(layout), Arc::clone(&plan.filters))
 }
 
 /// The same with other settings.
