@@ -4,6 +4,11 @@
 //! same bytes; the processor decides the time alone. On AArch64 every processor has NEON, so the portable compilation
 //! is the vector code there.
 
+use std::sync::atomic::{AtomicU8, Ordering};
+
+/// The level above which [`Processor::best`] does not go.
+static MOST: AtomicU8 = AtomicU8::new(u8::MAX);
+
 /// Instructions that this machine has: only detection makes one, so that holding it proves them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Processor(Level);
@@ -21,19 +26,26 @@ impl Processor {
     /// What every machine of this architecture has.
     pub const PORTABLE: Self = Self(Level::Portable);
 
-    /// The most that this machine has.
+    /// The most that this machine has, unless [`Processor::limit_best`] says less.
     #[must_use]
     pub fn best() -> Self {
         #[cfg(target_arch = "x86_64")]
         {
-            if has_avx512() {
+            let most = MOST.load(Ordering::Relaxed);
+            if most >= Level::Avx512 as u8 && has_avx512() {
                 return Self(Level::Avx512);
             }
-            if has_avx2() {
+            if most >= Level::Avx2 as u8 && has_avx2() {
                 return Self(Level::Avx2);
             }
         }
         Self::PORTABLE
+    }
+
+    /// Makes `most` the best from now on, in every thread: for tests that compare whole runs. Nothing but time changes.
+    #[doc(hidden)]
+    pub fn limit_best(most: Self) {
+        MOST.store(most.0 as u8, Ordering::Relaxed);
     }
 
     /// Everything that this machine can run, to compare one compilation with another.

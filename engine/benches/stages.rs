@@ -1,5 +1,7 @@
 //! Each stage of a step, and the whole step, under Criterion: `cargo bench --bench stages`.
 
+#![allow(clippy::unwrap_used, reason = "a benchmark that cannot start fails by panicking")]
+
 #[allow(unreachable_pub, reason = "the file belongs to the program")]
 #[path = "../src/commands/bench/stages.rs"]
 mod stages;

@@ -151,13 +151,17 @@ pub(crate) struct BenchArguments {
     /// Also measure how a step grows with boxes out of sight, states, pixels and threads (takes a minute)
     #[arg(long)]
     pub(crate) growth: bool,
+    /// With --growth: the folder for growth.svg and growth.png
+    #[arg(long, requires = "growth", value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
     /// Change a setting of the script, such as camera.noise=0; may be given again
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
     /// Only learn so many steps, for programs that count instructions
     #[arg(long, hide = true, value_parser = count, value_name = "N")]
     pub(crate) count_steps: Option<u64>,
-    /// How many steps each figure is measured over, 1200 or more
+    /// How many steps each figure is measured over, 1200 or more; times are those of the processor, so that other programs
+    /// disturb little
     #[arg(long, default_value = "20000", value_parser = count, allow_hyphen_values = true, value_name = "N")]
     pub(crate) steps: u64,
     /// Print the figures as JSON on standard output, and nothing else there

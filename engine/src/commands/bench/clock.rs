@@ -1,9 +1,9 @@
-//! Times of work: medians over many short stretches, since other programs take turns.
+//! Times of work: medians over many short stretches of the processor's time, which other programs disturb little.
 
 use std::hint::black_box;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
-use std::time::Instant;
+use std::time::Duration;
 
 use engine::diagnostic::Result;
 use engine::experiment::{Ledger, Plan, WINDOW_STEPS, in_parallel, learn_into};
@@ -23,6 +23,20 @@ pub(super) struct StageTime {
     pub(super) us: f64,
 }
 
+/// The time that this thread has had on a processor.
+#[cfg(unix)]
+fn now() -> Duration {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    Duration::try_from(time).unwrap_or_default()
+}
+
+/// The time since the first call, where threads have no clocks of their own.
+#[cfg(not(unix))]
+fn now() -> Duration {
+    static START: std::sync::LazyLock<std::time::Instant> = std::sync::LazyLock::new(std::time::Instant::now);
+    START.elapsed()
+}
+
 /// Learns once with each of the first seeds, with log, on as many threads, and lists the microseconds of a step in each window.
 ///
 /// # Errors
@@ -32,10 +46,10 @@ pub(super) fn learn_on(plan: &Plan, threads: usize) -> Result<Vec<f64>> {
     let seeds: Vec<u64> = (1..=threads as u64).collect();
     let windows = in_parallel(&seeds, threads, |seed| {
         let ends = Mutex::new(Vec::new());
-        let note = |_| ends.lock().unwrap_or_else(PoisonError::into_inner).push(Instant::now());
+        let note = |_| ends.lock().unwrap_or_else(PoisonError::into_inner).push(now());
         learn_into(plan, seed, &stop, &note, &mut Ledger::new(plan, plan.settings.run.steps))?.whole()?;
         let ends = ends.into_inner().unwrap_or_else(PoisonError::into_inner);
-        let us = |pair: &[Instant]| (pair[1] - pair[0]).as_secs_f64() * 1e6 / WINDOW_STEPS as f64;
+        let us = |pair: &[Duration]| (pair[1] - pair[0]).as_secs_f64() * 1e6 / WINDOW_STEPS as f64;
         Ok(ends.windows(2).map(us).collect::<Vec<_>>())
     })?;
     Ok(windows.concat())
@@ -96,9 +110,9 @@ pub(super) fn empty_step_us(plan: &Plan, calls: u64) -> Result<f64> {
 /// Median microseconds of one call, over rounds of [`SAMPLES`] calls, about `calls` in all.
 fn median_us(calls: u64, mut call: impl FnMut(usize)) -> f64 {
     let round = |_| {
-        let started = Instant::now();
+        let started = now();
         (0..SAMPLES).for_each(&mut call);
-        started.elapsed().as_secs_f64() * 1e6 / SAMPLES as f64
+        (now() - started).as_secs_f64() * 1e6 / SAMPLES as f64
     };
     median((0..calls.div_ceil(SAMPLES as u64)).map(round).collect())
 }

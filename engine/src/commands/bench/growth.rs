@@ -1,7 +1,10 @@
 //! How a step grows with boxes, states, pixels and threads.
 
-use engine::diagnostic::Result;
+use std::path::Path;
+
+use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::Plan;
+use engine::report::{GrowthGroup, growth};
 
 use super::clock::{stages, step_us};
 use super::workload::{with_boxes, with_settings};
@@ -38,11 +41,25 @@ pub(super) fn measure(plan: &Plan) -> Result<Vec<Row>> {
         let plan = with_settings(plan, &[("camera.width_px", *width), ("camera.height_px", *height)])?;
         Ok((format!("{width}x{height}"), plan))
     };
-    let mut rows = kind("boxes", BOXES.iter().map(boxes).collect::<Result<_>>()?)?;
-    rows.extend(kind("states", GRIDS.iter().map(states).collect::<Result<_>>()?)?);
-    rows.extend(kind("image", IMAGES.iter().map(image).collect::<Result<_>>()?)?);
+    let mut rows = kind("boxes, nearly all out of sight", BOXES.iter().map(boxes).collect::<Result<_>>()?)?;
+    rows.extend(kind("states of the grid", GRIDS.iter().map(states).collect::<Result<_>>()?)?);
+    rows.extend(kind("pixels of the image", IMAGES.iter().map(image).collect::<Result<_>>()?)?);
     rows.extend(threads(plan)?);
     Ok(rows)
+}
+
+/// Draws the rows into a folder, which is made if need be.
+///
+/// # Errors
+/// If a file cannot be written.
+pub(super) fn draw(behaviour: &str, rows: &[Row], folder: &Path) -> Result<()> {
+    std::fs::create_dir_all(folder).map_err(|error| Diagnostic::disk("create", folder, &error))?;
+    let kinds: Vec<&[Row]> = rows.chunk_by(|a, b| a.what == b.what).collect();
+    let bars: Vec<Vec<(&str, f64)>> =
+        kinds.iter().map(|rows| rows.iter().map(|row| (row.amount.as_str(), row.step_us)).collect()).collect();
+    let groups: Vec<GrowthGroup<'_>> =
+        kinds.iter().zip(&bars).map(|(rows, bars)| GrowthGroup { what: rows[0].what, bars }).collect();
+    growth(&format!("A step of '{behaviour}' as its world and its image grow"), &groups)?.write(folder, "growth")
 }
 
 fn kind(what: &'static str, plans: Vec<(String, Plan)>) -> Result<Vec<Row>> {

@@ -43,6 +43,9 @@ pub(crate) fn run(arguments: &BenchArguments, console: &mut Console) -> std::res
         return Ok(0);
     }
     let report = measure(&plan, arguments)?;
+    if let (Some(folder), Some(rows)) = (&arguments.out, &report.growth) {
+        growth::draw(&report.behaviour, rows, folder)?;
+    }
     console.json(&report)?;
     print(console, &report)?;
     Ok(0)
