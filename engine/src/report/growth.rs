@@ -29,19 +29,20 @@ pub struct GrowthGroup<'a> {
 /// If the picture cannot be drawn or encoded.
 pub fn growth(title: &str, groups: &[GrowthGroup<'_>]) -> Result<Picture> {
     let sheet = Sheet::new(WIDTH_PX, HEIGHT_PX, title);
-    let count = groups.len().max(1) as f64;
-    let width_px = (WIDTH_PX - 2.0 * MARGIN_PX - GAP_PX * (count - 1.0)) / count;
-    for (index, group) in groups.iter().enumerate() {
-        draw(&sheet, group, MARGIN_PX + index as f64 * (width_px + GAP_PX), width_px);
+    let bars: usize = groups.iter().map(|group| group.bars.len()).sum();
+    let place_px = (WIDTH_PX - 2.0 * MARGIN_PX - GAP_PX * (groups.len().max(1) - 1) as f64) / bars.max(1) as f64;
+    let mut left_px = MARGIN_PX;
+    for group in groups {
+        draw(&sheet, group, left_px, place_px);
+        left_px += group.bars.len() as f64 * place_px + GAP_PX;
     }
     sheet.finish()
 }
 
-fn draw(sheet: &Sheet, group: &GrowthGroup<'_>, left_px: f64, width_px: f64) {
+fn draw(sheet: &Sheet, group: &GrowthGroup<'_>, left_px: f64, place_px: f64) {
     let (top_px, bottom_px) = (BELOW_TITLE_PX + 48.0, HEIGHT_PX - MARGIN_PX - 30.0);
     sheet.text(words(group.what, spot(left_px, BELOW_TITLE_PX + 8.0), LABEL_PX, TEXT));
     let most = group.bars.iter().map(|bar| bar.1).filter(|us| us.is_finite()).fold(f64::MIN_POSITIVE, f64::max);
-    let place_px = width_px / group.bars.len().max(1) as f64;
     for (index, (name, us)) in group.bars.iter().enumerate() {
         let middle_px = left_px + (index as f64 + 0.5) * place_px;
         let half_px = place_px * FILLED * 0.5;
@@ -53,7 +54,8 @@ fn draw(sheet: &Sheet, group: &GrowthGroup<'_>, left_px: f64, width_px: f64) {
         label(&format!("{us:.1} µs"), bottom_px - height_px - 14.0, TEXT);
         label(name, bottom_px + 18.0, QUIET);
     }
-    sheet.line(vec![spot(left_px, bottom_px), spot(left_px + width_px, bottom_px)], 1.0, FRAME);
+    let end_px = left_px + group.bars.len() as f64 * place_px;
+    sheet.line(vec![spot(left_px, bottom_px), spot(end_px, bottom_px)], 1.0, FRAME);
 }
 
 #[cfg(test)]

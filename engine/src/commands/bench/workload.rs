@@ -70,7 +70,7 @@ pub(super) fn with_boxes(plan: &Plan, solids: usize) -> Result<Plan> {
     for index in 0..solids.saturating_sub(own) {
         let (x_m, y_m) = (FAR_M + (index % ROW) as f64, FAR_M + (index / ROW) as f64);
         // Writing to a String cannot fail.
-        let _ = write!(text, "\n[[box]]\ncentre_m = [{x_m}, {y_m}, 0.5]\nsize_m = [0.5, 0.5, 1]\n");
+        let _ = write!(text, "\n[[box]]\ncentre_m = [{x_m}, {y_m}]\nsize_m = [0.5, 0.5, 1]\n");
     }
     let layout = Layout::parse(SourceText::new(&plan.layout.source.path, text))?;
     Plan::with_layout(Arc::clone(&plan.behaviour), plan.settings.clone(), Arc::new(layout), Arc::clone(&plan.filters))
