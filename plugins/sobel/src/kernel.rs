@@ -63,7 +63,10 @@ fn mark_row(processor: Processor, rows: [&[u8]; 3], least_square: i32, out: &mut
 /// Calls `mark` with both gradients of every pixel of a row but its ends.
 #[inline(always)]
 fn for_each_gradient([top, middle, bottom]: [&[u8]; 3], out: &mut [u8], mark: impl Fn(i16, i16) -> u8) {
-    let Some(inner) = out.len().checked_sub(2) else { return };
+    if out.len() < 2 {
+        return;
+    }
+    let inner = out.len() - 2;
     // Slices of one known length let the compiler drop the bounds checks and use vectors.
     let (tl, tc, tr) = (&top[..inner], &top[1..=inner], &top[2..inner + 2]);
     let (ml, mr) = (&middle[..inner], &middle[2..inner + 2]);

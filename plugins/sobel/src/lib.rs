@@ -5,7 +5,7 @@
 //! * Norm: Euclidean. A pixel is an edge where `gx² + gy² >= threshold²`, with the kernels
 //!   `gx = [-1 0 1; -2 0 2; -1 0 1]` and `gy` its transpose, so a step of 1 grey level has a norm of 4.
 
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 
 mod kernel;
 

@@ -5,9 +5,11 @@ mod growth;
 mod stages;
 mod workload;
 
+use std::sync::atomic::AtomicBool;
+
 use dispatch::Processor;
 use engine::diagnostic::Result;
-use engine::experiment::Plan;
+use engine::experiment::{Ledger, Plan, learn_into};
 
 use self::clock::StageTime;
 use self::growth::Row;
@@ -38,7 +40,8 @@ pub(crate) fn run(arguments: &BenchArguments, console: &mut Console) -> std::res
     let plan = workload::plan(arguments)?;
     if let Some(steps) = arguments.count_steps {
         // Counted from outside, instruction by instruction.
-        drop(clock::learn_on(&workload::with_steps(&plan, steps), 1)?);
+        let (plan, stop) = (workload::with_steps(&plan, steps), AtomicBool::new(false));
+        learn_into(&plan, 1, &stop, &|_| (), &mut Ledger::new(&plan, steps))?.whole()?;
         console.line(&format!("{steps} steps, {}", Processor::best().name()))?;
         return Ok(0);
     }
