@@ -20,6 +20,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("record", &["world", "experiment"]),
     ("report", &["world", "sensors", "experiment"]),
     ("reproduce", &["world", "learner", "reward", "robot", "experiment", "report"]),
+    ("pack", &["world", "filter", "robot", "learner", "reward", "experiment", "store", "report"]),
 ];
 const SHARED: &[&str] = &["geometry", "random", "settings", "diagnostic"];
 /// Words of the clock and of chance, and who may say them.

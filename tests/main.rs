@@ -33,6 +33,8 @@ mod modules;
 mod native;
 /// A filter from the template: built, listed, checked, learned with.
 mod new_filter;
+/// Behaviour packs: made, signed, refused, installed, shared.
+mod pack;
 /// Filters listed and photographs seen through them; what cannot be seen.
 mod photos;
 /// Recordings for viewers, read back by another reader.

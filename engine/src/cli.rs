@@ -1,11 +1,13 @@
 //! The command line: names, defaults and help, no logic.
 
+mod pack;
 mod recorded;
 
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+pub(crate) use pack::*;
 pub(crate) use recorded::{ExplainArguments, ReplayArguments, RescoreArguments};
 
 /// Learns visual robot behaviours from reward scripts: learned, tested and drawn in about a second.
@@ -38,6 +40,8 @@ pub(crate) enum Command {
     Plugins(PluginsArguments),
     /// Write a new filter that builds, to change it into your own
     New(NewArguments),
+    /// Share a behaviour: one signed file that carries its own evidence
+    Pack(PackArguments),
     /// Print the reference page of the script language
     Reference(ReferenceArguments),
     /// Serve one native filter to an engine that runs with --isolate; nothing for people
@@ -57,6 +61,7 @@ impl Command {
             Self::Reproduce(arguments) => arguments.json,
             Self::Filter(arguments) => arguments.json,
             Self::Plugins(arguments) => arguments.json,
+            Self::Pack(arguments) => arguments.json,
             Self::New(_) | Self::Reference(_) | Self::FilterWorker(_) => false,
         }
     }
@@ -66,9 +71,9 @@ impl Command {
 /// stopped by Ctrl-C (what was learned is kept).
 #[derive(Debug, Args)]
 #[command(after_help = "Exit status: 0 learned; 1 not good enough; 2 usage; 3 bad input file; 4 a limit stopped it; \
-                        6 files and disk; 130 stopped by Ctrl-C, with what was learned kept.")]
+                        5 refused for trust; 6 files and disk; 130 stopped by Ctrl-C, with what was learned kept.")]
 pub(crate) struct RunArguments {
-    /// The behaviour's script, such as scripts/wall.rhai
+    /// The behaviour: a script such as scripts/wall.rhai, a .pack file, a pack's folder, or an installed pack's name
     pub(crate) behaviour: PathBuf,
     /// The first seed
     #[arg(long, default_value = "1", value_parser = seed, allow_hyphen_values = true)]
@@ -97,6 +102,9 @@ pub(crate) struct RunArguments {
     /// The steps from one recorded image to the next
     #[arg(long, default_value = "10", value_parser = count, allow_hyphen_values = true, value_name = "N")]
     pub(crate) record_every: u64,
+    /// Run a .pack file that is not signed
+    #[arg(long)]
+    pub(crate) allow_unsigned: bool,
     /// Print the summary as JSON on standard output, and nothing else there
     #[arg(long)]
     pub(crate) json: bool,
@@ -106,7 +114,7 @@ pub(crate) struct RunArguments {
 
 #[derive(Debug, Args)]
 pub(crate) struct TestArguments {
-    /// The folder of a run, such as runs/wall/1
+    /// The folder of a run, such as runs/wall/1; or a .pack file or an installed pack's name, for the policy that it carries
     pub(crate) run: PathBuf,
     /// Another world: its name, or the path of a world file; without it, the one that the run learned in
     #[arg(long)]
@@ -123,6 +131,9 @@ pub(crate) struct TestArguments {
     /// A folder for the figures and pictures of the test; without it, nothing is written
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Run a .pack file that is not signed
+    #[arg(long)]
+    pub(crate) allow_unsigned: bool,
     /// Print the figures as JSON on standard output, and nothing else there
     #[arg(long)]
     pub(crate) json: bool,

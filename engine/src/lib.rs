@@ -40,3 +40,5 @@ pub mod report;
 pub mod reproduce;
 
 pub mod store;
+
+pub mod pack;
