@@ -1,11 +1,13 @@
 //! The command line: names, defaults and help, no logic.
 
+mod check;
 mod recorded;
 
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+pub(crate) use check::CheckArguments;
 pub(crate) use recorded::{ExplainArguments, ReplayArguments, RescoreArguments};
 
 /// Learns visual robot behaviours from reward scripts: learned, tested and drawn in about a second.
@@ -20,6 +22,8 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Learn a behaviour, test the frozen policy, draw the results
     Run(RunArguments),
+    /// Look a behaviour over before it is learned: mistakes, and ways to cheat its reward
+    Check(CheckArguments),
     /// Test a learned policy again, in the same or another world
     Test(TestArguments),
     /// Play a recorded run again and compare every step; with --verify, learn it again too
@@ -49,6 +53,7 @@ impl Command {
     pub(crate) fn wants_json(&self) -> bool {
         match self {
             Self::Run(arguments) => arguments.json,
+            Self::Check(arguments) => arguments.json,
             Self::Test(arguments) => arguments.json,
             Self::Replay(arguments) => arguments.json,
             Self::Explain(arguments) => arguments.json,

@@ -1,6 +1,7 @@
 //! One file for each command.
 
 pub(crate) mod bench;
+pub(crate) mod check;
 mod combine;
 pub(crate) mod explain;
 pub(crate) mod filter;

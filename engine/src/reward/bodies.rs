@@ -36,7 +36,10 @@ pub(super) fn read(reader: &Reader<'_>, ast: &AST, outline: &mut Outline) {
                 outline.reward_recovers |= recovers(expr);
             }
         }
-        if judges && let Some(found) = beam_loop(reader, path) && seen.insert(found.span.start) {
+        if judges
+            && let Some(found) = beam_loop(reader, path)
+            && seen.insert(found.span.start)
+        {
             outline.loops.push(found);
         }
         true
@@ -149,13 +152,14 @@ fn group(expr: &Expr) -> Option<String> {
 /// Whether it is a map that asks for recovery.
 fn recovers(expr: &Expr) -> bool {
     match expr {
-        Expr::Map(map, _) => map.0.iter().any(|(key, value)| {
-            key.name.as_str() == "recover" && !matches!(value, Expr::BoolConstant(false, _))
-        }),
+        Expr::Map(map, _) => map
+            .0
+            .iter()
+            .any(|(key, value)| key.name.as_str() == "recover" && !matches!(value, Expr::BoolConstant(false, _))),
         // A constant map is folded to one value.
-        Expr::DynamicConstant(value, _) => {
-            value.read_lock::<rhai::Map>().is_some_and(|map| map.get("recover").is_some_and(|on| on.as_bool() == Ok(true)))
-        }
+        Expr::DynamicConstant(value, _) => value
+            .read_lock::<rhai::Map>()
+            .is_some_and(|map| map.get("recover").is_some_and(|on| on.as_bool() == Ok(true))),
         _ => false,
     }
 }

@@ -201,7 +201,8 @@ impl Reader<'_> {
             Some(Local::Fact(fact)) => Some(fact),
             _ => None,
         };
-        let fact = self.fact(fact).or_else(|| Chain::of(fact).filter(|c| c.links.is_empty()).and_then(|c| named(c.root)))?;
+        let fact =
+            self.fact(fact).or_else(|| Chain::of(fact).filter(|c| c.links.is_empty()).and_then(|c| named(c.root)))?;
         let start = self.at(first(expr));
         Some(Compared { fact, absolute, comparison, limit, span: start..self.expression_end(start) })
     }
