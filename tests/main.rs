@@ -19,6 +19,8 @@ mod determinism;
 mod filters;
 /// Every step kept, and brought back by its actions.
 mod ledger;
+/// Seeded mistakes and what is found in them; scripts that ship; ways to cheat.
+mod lint;
 /// A filter from the template: built, listed, checked, learned with.
 mod new_filter;
 /// Filters listed and photographs seen through them; what cannot be seen.

@@ -46,7 +46,8 @@ fn never(plan: &Plan, index: usize, seen: &RuleTrial, needed: u64, steps: u64) -
         let message = format!("{name} never fired: an earlier rule recovered each time");
         let label = format!("held in {} of {} steps, each time too late", seen.held, seen.looked);
         let help = "put it before the other rule, or make the two conditions exclude each other";
-        return Some(Finding::warning(plan, "W-RULE-SHADOWED", span, message).say(label, help));
+        let finding = Finding::warning(plan, "W-RULE-SHADOWED", span, message).say(label, help);
+        return Some(if has_a_twin(plan, index) { finding.as_note() } else { finding });
     }
     if needed > 1 && seen.held > 0 {
         let period_s = plan.settings.run.period_s;
@@ -73,10 +74,18 @@ fn never(plan: &Plan, index: usize, seen: &RuleTrial, needed: u64, steps: u64) -
     let message = format!("{name} never fired in {steps} steps");
     let help = "check the threshold and that the world has what the rule is about";
     let finding = Finding::warning(plan, "W-RULE-NEVER", span, message).say(label, help);
-    // Goals are rare before anything is learned, and so is what hardly ever happens to the body.
+    // Goals are rare before anything is learned, and so are accidents of the body and the end of one's patience.
     let goal = plan.behaviour.fixed_value(index).is_some_and(|value| value > 0.0);
-    let body = seen.facts.iter().any(|fact| fact.0.starts_with("robot."));
-    Some(if goal || body { finding.as_note() } else { finding })
+    let rare = |fact: &(String, &str, f64, f64)| fact.0 == "robot.contact" || fact.0 == "robot.fallen";
+    let time = seen.facts.iter().all(|fact| fact.0.starts_with("time."));
+    Some(if goal || time || seen.facts.iter().any(rare) { finding.as_note() } else { finding })
+}
+
+/// Whether an earlier rule that recovers does just the same: then it does not matter which of the two fires.
+fn has_a_twin(plan: &Plan, index: usize) -> bool {
+    let (rules, value) = (&plan.behaviour.outline().rules, plan.behaviour.fixed_value(index));
+    let same = |earlier: usize| rules[earlier].recover && plan.behaviour.fixed_value(earlier) == value;
+    rules[index].recover && value.is_some() && (0..index).any(same)
 }
 
 fn always(plan: &Plan, index: usize, seen: &RuleTrial) -> Finding {
@@ -100,7 +109,7 @@ fn spun(plan: &Plan, index: usize, needed: u64, exploits: &Exploits) -> Option<F
     let longest = spins.iter().map(|seen| seen.longest).max().unwrap_or(0);
     let message = format!("a robot that spins in place never meets {}", name(plan, index));
     let label = format!("spinning meets it for {:.1} s at most", longest as f64 * period_s);
-    let help = format!("write 'for {:.1} seconds' or less", longest as f64 * period_s);
+    let help = format!("write 'for {:.1} seconds' or less", longest.saturating_sub(1).max(1) as f64 * period_s);
     let span = rule.time_span.clone().unwrap_or_else(|| rule.condition_span.clone());
     Some(Finding::warning(plan, "W-PERSISTENCE", span, message).say(label, help))
 }
