@@ -1,8 +1,8 @@
 //! The Markov model of the states, fitted to recorded steps and solved.
 //!
 //! Every pair of state and action has its counts, and one imagined visit besides that does what the state does on average:
-//! an action that was tried once and happened to go well is not yet believed. Policies are found by policy iteration;
-//! each is evaluated until nothing moves by more than rounding.
+//! an action that was tried once and happened to go well is not yet believed. The best policy is found by policy
+//! iteration and evaluated until nothing moves any more.
 
 use std::collections::BTreeMap;
 
@@ -15,6 +15,7 @@ const MOST_DISCOUNT: f64 = 0.999;
 /// Rounds of improvement, and sweeps of each evaluation, at most.
 const MOST_ROUNDS: usize = 100;
 const MOST_SWEEPS: usize = 20_000;
+const ROUGH: f64 = 1e-4;
 const STILL: f64 = 1e-10;
 
 /// How well the recorded steps cover the states.
@@ -96,38 +97,54 @@ impl Model {
         let discount = discount.min(MOST_DISCOUNT);
         let mut policy: Vec<usize> = self.pairs.iter().map(|actions| most_visited(actions)).collect();
         let mut values = vec![0.0; self.states.len()];
-        for _ in 0..MOST_ROUNDS {
-            self.evaluate(&policy, discount, &mut values);
-            let better: Vec<usize> =
-                (0..policy.len()).map(|s| self.improved(s, policy[s], discount, &values)).collect();
-            if better == policy {
-                break;
+        // Roughly at first: what a policy is worth to the last digit matters once it is nearly the best.
+        for still in [ROUGH, STILL] {
+            for _ in 0..MOST_ROUNDS {
+                self.evaluate(&policy, discount, &mut values, still);
+                let improve = |state: usize| self.improved(state, policy[state], discount, &values);
+                let better: Vec<usize> = (0..policy.len()).map(improve).collect();
+                if better == policy {
+                    break;
+                }
+                policy = better;
             }
-            policy = better;
         }
         let best = policy.into_iter().zip(values);
         self.states.iter().copied().zip(best).collect()
     }
 
-    fn evaluate(&self, policy: &[usize], discount: f64, values: &mut [f64]) {
+    /// Each state's value under a policy, until none moves by more than `still` in a sweep.
+    fn evaluate(&self, policy: &[usize], discount: f64, values: &mut [f64], still: f64) {
+        let rows: Vec<Pair> = policy.iter().enumerate().map(|(state, action)| self.row(state, *action)).collect();
         for _ in 0..MOST_SWEEPS {
             let mut moved = 0.0_f64;
-            for (state, action) in policy.iter().enumerate() {
-                let value = self.value(state, *action, discount, values);
+            for (state, row) in rows.iter().enumerate() {
+                let value = row.reward + discount * row.follow(values);
                 moved = moved.max((value - values[state]).abs());
                 values[state] = value;
             }
-            if moved <= STILL {
+            if moved <= still {
                 return;
             }
         }
     }
 
+    /// A pair with its imagined visit, as expected reward and shares of what follows.
+    fn row(&self, state: usize, action: usize) -> Pair {
+        let (pair, all) = (&self.pairs[state][action], &self.mean[state]);
+        let count = pair.visits + 1.0;
+        let mut next: BTreeMap<usize, f64> = pair.next.iter().map(|(to, visits)| (*to, visits / count)).collect();
+        for (to, visits) in &all.next {
+            *next.entry(*to).or_default() += visits / (all.visits * count);
+        }
+        let reward = (pair.reward + all.reward / all.visits) / count;
+        Pair { visits: 1.0, reward, next: next.into_iter().collect() }
+    }
+
     fn value(&self, state: usize, action: usize, discount: f64, values: &[f64]) -> f64 {
         let (pair, all) = (&self.pairs[state][action], &self.mean[state]);
-        let follow = |of: &Pair| of.next.iter().map(|(next, count)| count * values[*next]).sum::<f64>();
-        let imagined = (all.reward + discount * follow(all)) / all.visits;
-        (pair.reward + discount * follow(pair) + imagined) / (pair.visits + 1.0)
+        let imagined = (all.reward + discount * all.follow(values)) / all.visits;
+        (pair.reward + discount * pair.follow(values) + imagined) / (pair.visits + 1.0)
     }
 
     fn improved(&self, state: usize, present: usize, discount: f64, values: &[f64]) -> usize {
@@ -152,6 +169,10 @@ impl Pair {
             Some((_, count)) => *count += 1.0,
             None => self.next.push((next, 1.0)),
         }
+    }
+
+    fn follow(&self, values: &[f64]) -> f64 {
+        self.next.iter().map(|(next, count)| count * values[*next]).sum()
     }
 }
 

@@ -157,7 +157,8 @@ impl Reader<'_> {
             value_span: rule.value_span.clone(),
             time_span: written.time.map(|(time, _)| {
                 let start = self.at(first(time));
-                start..self.code.source.word_at(start).end.max(start + 1)
+                let tail = &self.code.plain[start..];
+                start..start + tail[..tail.find("=>").unwrap_or(0)].trim_end().len()
             }),
             recover: rule.recover,
         }
