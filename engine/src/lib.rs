@@ -35,6 +35,8 @@ pub mod experiment;
 
 pub mod lint;
 
+pub mod record;
+
 pub mod report;
 
 pub mod reproduce;

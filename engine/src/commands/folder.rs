@@ -16,7 +16,8 @@ pub(super) struct SeedResult {
     pub(super) learned: Learned,
     pub(super) tested: TestRun,
     pub(super) summary: Summary,
-    pub(super) log: RunLog,
+    /// Every step, of a run of one seed.
+    pub(super) log: Option<RunLog>,
 }
 
 /// A folder for one run, of one seed or many.
@@ -36,11 +37,21 @@ impl RunFolder {
         &self.path
     }
 
-    /// Writes the policy of a seed that a failure ended; of many seeds, each has its folder.
-    pub(super) fn keep(&self, plan: &Plan, learned: &Learned, many: bool) -> Result<PathBuf> {
-        let folder = if many { self.path.join(learned.seed.to_string()) } else { self.path.clone() };
+    /// Of many seeds, each has its folder.
+    fn of_seed(&self, seed: u64, many: bool) -> Result<PathBuf> {
+        let folder = if many { self.path.join(seed.to_string()) } else { self.path.clone() };
         create(&folder)?;
-        let path = folder.join("policy.toml");
+        Ok(folder)
+    }
+
+    /// Writes the log of a seed as soon as it is done, so that no more of them are in memory than threads.
+    pub(super) fn keep_log(&self, plan: &Plan, seed: u64, log: &RunLog, many: bool) -> Result<()> {
+        write_log(&self.of_seed(seed, many)?, plan, &[], seed, log)
+    }
+
+    /// Writes the policy of a seed that a failure ended.
+    pub(super) fn keep(&self, plan: &Plan, learned: &Learned, many: bool) -> Result<PathBuf> {
+        let path = self.of_seed(learned.seed, many)?.join("policy.toml");
         write_atomic(&path, policy_text(plan, learned)?.as_bytes())?;
         Ok(path)
     }
@@ -124,8 +135,7 @@ fn write_seed(folder: &Path, plan: &Plan, result: &SeedResult) -> Result<()> {
         .collect();
     write_atomic(&folder.join("curve.csv"), curve_csv(WINDOW_STEPS, &rules, &rows).as_bytes())?;
     let table = policy_text(plan, &result.learned)?;
-    write_atomic(&folder.join("policy.toml"), table.as_bytes())?;
-    write_log(folder, plan, &[], result.summary.seed, &result.log)
+    write_atomic(&folder.join("policy.toml"), table.as_bytes())
 }
 
 /// Writes `log.bin`, which names the run that it belongs to.
