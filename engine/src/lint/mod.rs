@@ -20,7 +20,7 @@ pub use finding::{Finding, Severity};
 pub use model::{Coverage, Model};
 pub use trial::{Trial, TrialStep};
 
-use crate::diagnostic::Result;
+use crate::diagnostic::{Kind, Result};
 use crate::experiment::Plan;
 
 /// The most findings of one behaviour that are kept.
@@ -54,27 +54,31 @@ impl Report {
 /// Looks a behaviour over: its text, some thousand steps, and what its reward can be had for.
 ///
 /// # Errors
-/// If a sensor or a filter fails; a script that fails in a step is a finding.
+/// If a sensor or a filter fails, or a limit stops the script; any other failure of it in a step is a finding.
 pub fn check(plan: &Plan) -> Result<Report> {
     let mut findings = read(plan);
     let (mut steps, mut exploits) = (0, None);
     if plan.settings.policies.is_empty() {
-        match Trial::run(plan) {
-            Ok(mut trial) => {
-                let found = Exploits::find(plan, &mut trial)?;
+        let tried = Trial::run(plan).and_then(|mut trial| Ok((Exploits::find(plan, &mut trial)?, trial)));
+        match tried {
+            Ok((found, trial)) => {
                 steps = trial.steps();
                 fired::check(plan, &trial, &found, &mut findings);
                 scale::observed(plan, &trial, &mut findings);
-                choice::observed(plan, &trial, &mut findings);
+                choice::observed(plan, &trial, &found, &mut findings);
                 found.check(plan, &mut findings);
                 exploits = Some(found);
             }
-            Err(fault) => findings.push(Finding::of_error(plan, &fault)),
+            // The script's own mistake is a finding like others; what a limit stopped is none.
+            Err(fault) if fault.kind == Kind::Input => findings.push(Finding::of_error(plan, &fault)),
+            Err(fault) => return Err(fault),
         }
     }
-    findings.sort_by_key(|finding| (finding.line, finding.code));
+    // If some must be left out, let it be notes.
+    findings.sort_by_key(|finding| (finding.severity, finding.line));
     let left_out = findings.len().saturating_sub(MOST_FINDINGS);
     findings.truncate(MOST_FINDINGS);
+    findings.sort_by_key(|finding| (finding.line, finding.code));
     let (behaviour, world) = (plan.behaviour.name().to_owned(), plan.layout.name.clone());
     Ok(Report { behaviour, world, steps, findings, left_out, exploits })
 }

@@ -94,6 +94,11 @@ impl Trial {
         self.transitions.len() as u64
     }
 
+    /// The steps with actions at random.
+    pub(super) fn random(&self) -> &[TrialStep] {
+        self.transitions.get(..RANDOM_STEPS as usize).unwrap_or_default()
+    }
+
     /// Adds one more drive.
     pub(super) fn add(&mut self, steps: &[TrialStep], rules: &[RuleTrial]) {
         self.transitions.extend_from_slice(steps);
