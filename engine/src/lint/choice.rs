@@ -30,9 +30,10 @@ pub(super) fn written(plan: &Plan, findings: &mut Vec<Finding>) {
 pub(super) fn observed(plan: &Plan, trial: &Trial, exploits: &Exploits, findings: &mut Vec<Finding>) {
     let Some(first) = trial.transitions.first().map(|step| step.reward) else { return };
     let constant = trial.transitions.iter().all(|step| step.reward == first && !step.recover);
-    // Rules that never fired have a finding of their own.
+    // Rules that never fired have a finding of their own, and so has what makes them fire always.
     let fired = trial.rules.iter().any(|rule| rule.fired > 0);
-    if !fired || findings.iter().any(|finding| finding.code == "W-NO-CHOICE") {
+    let explained = |finding: &Finding| matches!(finding.code, "W-NO-CHOICE" | "W-UNIT" | "W-RULE-ALWAYS");
+    if !fired || findings.iter().any(explained) {
         return;
     }
     if constant {
