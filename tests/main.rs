@@ -12,6 +12,8 @@ mod allocation;
 mod architecture;
 /// Every mistake that a user can make gets one clear error; the texts stand in `snapshots/`.
 mod bad_input;
+/// What a bench measures and what it refuses.
+mod bench;
 /// Learned policies combined: files, figures, disagreements, mistakes.
 mod combine;
 /// The C header says what the Rust side of the filter contract says, on 64 and on 32 bits.

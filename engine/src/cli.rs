@@ -143,10 +143,30 @@ pub(crate) struct BenchArguments {
     /// Another world: its name, or the path of a world file
     #[arg(long)]
     pub(crate) world: Option<String>,
-    /// Change a setting of the script, such as camera.width_px=320; may be given again
+    /// Another size of the image, such as 320x240
+    #[arg(long, value_parser = size, value_name = "WIDTHxHEIGHT")]
+    pub(crate) size: Option<(u64, u64)>,
+    /// Another lens: pinhole or fisheye
+    #[arg(long)]
+    pub(crate) lens: Option<String>,
+    /// Draw speckles (value noise, 15 cm, 6 grey levels) on the floor and on every plain surface, and add pixel noise of at
+    /// least 2 grey levels
+    #[arg(long)]
+    pub(crate) texture: bool,
+    /// Also measure how a step grows with boxes out of sight, states, pixels and threads (takes a minute)
+    #[arg(long)]
+    pub(crate) growth: bool,
+    /// With --growth: the folder for growth.svg and growth.png
+    #[arg(long, requires = "growth", value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Change a setting of the script, such as camera.noise=0; may be given again
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
-    /// How many steps each figure is measured over
+    /// Only learn so many steps, for programs that count instructions
+    #[arg(long, hide = true, value_parser = count, value_name = "N")]
+    pub(crate) count_steps: Option<u64>,
+    /// How many steps each figure is measured over, 1200 or more; times are those of the processor, so that other programs
+    /// disturb little
     #[arg(long, default_value = "20000", value_parser = count, allow_hyphen_values = true, value_name = "N")]
     pub(crate) steps: u64,
     /// Print the figures as JSON on standard output, and nothing else there
@@ -302,6 +322,14 @@ fn count(text: &str) -> Result<u64, String> {
     match text.parse() {
         Ok(count) if (1..=1_000_000_000).contains(&count) => Ok(count),
         _ => Err("write a whole number from 1 to 1000000000".to_owned()),
+    }
+}
+
+fn size(text: &str) -> Result<(u64, u64), String> {
+    let parts = text.split_once('x').map(|(width, height)| (width.parse(), height.parse()));
+    match parts {
+        Some((Ok(width), Ok(height))) => Ok((width, height)),
+        _ => Err("write the width and the height in pixels, such as 320x240".to_owned()),
     }
 }
 
