@@ -16,6 +16,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("reward", &[]),
     ("robot", &["world", "sensors"]),
     ("experiment", &["world", "sensors", "filter", "state", "learner", "reward", "robot"]),
+    ("lint", &["world", "sensors", "filter", "state", "learner", "reward", "robot", "experiment"]),
     ("store", &["world", "filter", "state", "learner", "reward", "experiment"]),
     ("record", &["world", "experiment"]),
     ("report", &["world", "sensors", "experiment"]),

@@ -1,5 +1,6 @@
 //! The command line: names, defaults and help, no logic.
 
+mod check;
 mod pack;
 mod recorded;
 
@@ -7,6 +8,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+pub(crate) use check::CheckArguments;
 pub(crate) use pack::*;
 pub(crate) use recorded::{ExplainArguments, ReplayArguments, RescoreArguments};
 
@@ -22,6 +24,8 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Learn a behaviour, test the frozen policy, draw the results
     Run(RunArguments),
+    /// Look a behaviour over before it is learned: mistakes, and ways to cheat its reward
+    Check(CheckArguments),
     /// Test a learned policy again, in the same or another world
     Test(TestArguments),
     /// Play a recorded run again and compare every step; with --verify, learn it again too
@@ -53,6 +57,7 @@ impl Command {
     pub(crate) fn wants_json(&self) -> bool {
         match self {
             Self::Run(arguments) => arguments.json,
+            Self::Check(arguments) => arguments.json,
             Self::Test(arguments) => arguments.json,
             Self::Replay(arguments) => arguments.json,
             Self::Explain(arguments) => arguments.json,
