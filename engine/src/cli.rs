@@ -224,7 +224,7 @@ pub(crate) struct ReproduceArguments {
                         7 a stored run that does not fit."
 )]
 pub(crate) struct FilterArguments {
-    /// The behaviour's script, such as scripts/wall.rhai
+    /// The behaviour: a script such as scripts/wall.rhai, a .pack file, a pack's folder, or an installed pack's name
     pub(crate) behaviour: PathBuf,
     /// PNG or JPEG files, or folders of them; at most 64 MiB and 50 megapixels each
     #[arg(required = true)]

@@ -12,7 +12,7 @@ use super::FilterSources;
                         4 a limit stopped it; 6 files and disk. 'engine explain CODE' prints the page of a code."
 )]
 pub(crate) struct CheckArguments {
-    /// The behaviour's script, such as scripts/wall.rhai
+    /// The behaviour: a script such as scripts/wall.rhai, a .pack file, a pack's folder, or an installed pack's name
     pub(crate) behaviour: PathBuf,
     /// Another world: its name, or the path of a world file
     #[arg(long)]

@@ -1,22 +1,22 @@
 //! `engine check`: what is wrong or suspicious in a behaviour, before it is learned.
 
 use std::io::IsTerminal;
-use std::sync::Arc;
 
 use engine::experiment::{Overrides, Plan};
 use engine::lint::{self, Exploits, Report, Severity};
-use engine::reward::Behaviour;
+use engine::pack::Runnable;
 
-use super::sources::catalogue;
+use super::behaviour::open_to_look;
 use super::words::short;
 use crate::cli::CheckArguments;
 use crate::console::{Console, ConsoleError};
 
 pub(crate) fn run(arguments: &CheckArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
-    let behaviour = Arc::new(Behaviour::load(&arguments.behaviour)?);
     let overrides =
         Overrides { world: arguments.world.clone(), steps: None, test_steps: None, set: arguments.set.clone() };
-    let plan = Plan::with_filters(behaviour, &overrides, catalogue(&arguments.filters)?)?;
+    // A pack's filters stand in a folder that lives as long as it does.
+    let Runnable { plan, unpacked: _unpacked, .. } =
+        open_to_look(&arguments.behaviour, &overrides, &arguments.filters, false)?;
     let report = lint::check(&plan)?;
     console.json(&report)?;
     print(console, &plan, &report)?;
