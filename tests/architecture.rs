@@ -18,6 +18,8 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("experiment", &["world", "sensors", "filter", "state", "learner", "reward", "robot"]),
     ("store", &["world", "filter", "state", "learner", "reward", "experiment"]),
     ("report", &["world", "sensors", "experiment"]),
+    ("page", &["world", "sensors", "filter", "state", "learner", "reward", "experiment", "report"]),
+    ("watch", &["world", "filter", "reward", "experiment", "report", "page"]),
     ("reproduce", &["world", "learner", "reward", "robot", "experiment", "report"]),
 ];
 const SHARED: &[&str] = &["geometry", "random", "settings", "diagnostic"];

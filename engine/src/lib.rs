@@ -35,6 +35,11 @@ pub mod experiment;
 
 pub mod report;
 
+pub mod page;
+
 pub mod reproduce;
 
 pub mod store;
+
+#[cfg(feature = "serve")]
+pub mod watch;

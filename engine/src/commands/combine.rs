@@ -8,11 +8,12 @@ use engine::diagnostic::{Diagnostic, Kind, Result};
 use engine::experiment::{
     CombinationFigures, CombinedRun, Cycle, Member, Plan, Spread, Step, Summary, in_parallel, test_combined,
 };
+use engine::page::SeedData;
 use engine::report::{disagreements_csv, write_atomic};
 use engine::robot::SimulatedRobot;
 use engine::store::{RunLog, load_members, run_to_toml};
 
-use super::folder::{RunFolder, create, draw_frame, draw_trails, write_json, write_log};
+use super::folder::{RunFolder, create, draw_frame, draw_trails, write_json, write_log, write_page};
 use super::run::print_many;
 use super::stop::{INTERRUPTED, on_ctrl_c};
 use super::test::print_figures;
@@ -86,7 +87,11 @@ fn write_seed(folder: &Path, plan: &Plan, members: &[Member], result: &SeedResul
     write_atomic(&folder.join("disagreements.csv"), table.as_bytes())?;
     let title = format!("{} in {}, seed {}", plan.behaviour.name(), plan.layout.name, result.summary.seed);
     draw_trails(folder, plan, &title, &[("test: first 800 steps", &result.tested.run.trail)])?;
-    draw_frame(folder, plan, &result.tested.run)
+    draw_frame(folder, plan, &result.tested.run)?;
+    let test = Some(&result.summary.test);
+    let (learning, tested) = (&result.log.learning, &result.log.test);
+    let data = SeedData { seed: result.summary.seed, tally: None, policy: None, test, learning, tested };
+    write_page(folder, plan, &[data])
 }
 
 fn print_one(console: &mut Console, result: &SeedResult) -> std::result::Result<(), ConsoleError> {

@@ -5,11 +5,15 @@ use std::path::{Path, PathBuf};
 use engine::diagnostic::{Diagnostic, Kind, Result};
 use engine::experiment::{CertaintyGrid, Learned, Member, Plan, Spread, Summary, TestRun, Trail, WINDOW_STEPS};
 use engine::geometry::Point2;
+use engine::page::{Document, Moments, SeedData, page};
 use engine::report::{
     CurveData, CurveRow, PolicyData, PolicyState, TrajectoryData, certainty_grid, curve_csv, learning_curve, policy,
     snapshot_frame, trajectories, write_atomic,
 };
 use engine::store::{LOG_FILE, RunLog, policy_to_toml, run_to_toml};
+
+/// Moments of each phase that the page shows in pictures.
+const SHOTS: usize = 24;
 
 /// One seed's results.
 pub(super) struct SeedResult {
@@ -17,6 +21,19 @@ pub(super) struct SeedResult {
     pub(super) tested: TestRun,
     pub(super) summary: Summary,
     pub(super) log: RunLog,
+}
+
+impl SeedResult {
+    fn page_data(&self) -> SeedData<'_> {
+        SeedData {
+            seed: self.summary.seed,
+            tally: Some(&self.learned.tally),
+            policy: Some(&self.learned.policy),
+            test: Some(&self.tested.figures),
+            learning: &self.log.learning,
+            tested: &self.log.test,
+        }
+    }
 }
 
 /// A folder for one run, of one seed or many.
@@ -50,7 +67,8 @@ impl RunFolder {
         let [result] = results else { return self.write_many(plan, results) };
         write_seed(&self.path, plan, result)?;
         draw_curve(&self.path, plan, &[result])?;
-        draw_seed(&self.path, plan, result)
+        draw_seed(&self.path, plan, result)?;
+        write_page(&self.path, plan, &[result.page_data()])
     }
 
     fn write_many(&self, plan: &Plan, results: &[SeedResult]) -> Result<()> {
@@ -67,9 +85,10 @@ impl RunFolder {
         let worst =
             results.iter().max_by(|a, b| a.summary.test.failures_per_1000.total_cmp(&b.summary.test.failures_per_1000));
         match worst {
-            Some(worst) => draw_seed(&self.path.join(worst.summary.seed.to_string()), plan, worst),
-            None => Ok(()),
+            Some(worst) => draw_seed(&self.path.join(worst.summary.seed.to_string()), plan, worst)?,
+            None => return Ok(()),
         }
+        write_page(&self.path, plan, &results.iter().map(SeedResult::page_data).collect::<Vec<_>>())
     }
 }
 
@@ -126,6 +145,12 @@ fn write_seed(folder: &Path, plan: &Plan, result: &SeedResult) -> Result<()> {
     let table = policy_text(plan, &result.learned)?;
     write_atomic(&folder.join("policy.toml"), table.as_bytes())?;
     write_log(folder, plan, &[], result.summary.seed, &result.log)
+}
+
+/// Writes `report.html`: the page with all of the run in it.
+pub(super) fn write_page(folder: &Path, plan: &Plan, seeds: &[SeedData<'_>]) -> Result<()> {
+    let document = Document::new(plan, seeds, Moments { shots: SHOTS, scans: true, seeds: None })?;
+    write_atomic(&folder.join("report.html"), page(Some(&document))?.html.as_bytes())
 }
 
 /// Writes `log.bin`, which names the run that it belongs to.
