@@ -25,9 +25,9 @@ const IMPORTS: &[(&str, &[&str])] = &[
 const SHARED: &[&str] = &["geometry", "random", "settings", "diagnostic"];
 /// Words of the clock and of chance, and who may say them.
 const ONLY_IN: &[(&str, &[&str])] = &[
-    // The room of filters only waits for a worker, with a deadline.
-    ("std::time::Duration", &["commands", "console", "filter"]),
-    ("Instant", &["commands", "console"]),
+    // The room of filters only waits for a worker, with a deadline; the live page for people and files.
+    ("std::time::Duration", &["commands", "console", "filter", "watch"]),
+    ("Instant", &["commands", "console", "watch"]),
     ("SystemTime", &["commands", "console"]),
     ("rhai::", &["reward"]),
     ("parry3d", &["world"]),

@@ -13,7 +13,7 @@ use engine::report::{
 use engine::store::{LOG_FILE, RunLog, policy_to_toml, run_to_toml};
 
 /// Moments of each phase that the page shows in pictures.
-const SHOTS: usize = 24;
+const SHOTS: usize = 60;
 
 /// One seed's results.
 pub(super) struct SeedResult {

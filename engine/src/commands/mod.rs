@@ -15,4 +15,5 @@ pub(crate) mod run;
 pub(crate) mod sources;
 mod stop;
 pub(crate) mod test;
+pub(crate) mod watch;
 mod words;

@@ -1,9 +1,10 @@
 //! A page for every code: what it means, why it is refused, what to do. `engine explain CODE` prints it.
 
 mod filters;
+mod watch;
 
 /// A table of pages for each subject; the codes of none of them stand in another.
-const TABLES: &[&[(&str, &str)]] = &[PAGES, filters::PAGES];
+const TABLES: &[&[(&str, &str)]] = &[PAGES, filters::PAGES, watch::PAGES];
 
 /// Each code with its page, in the order of the alphabet.
 const PAGES: &[(&str, &str)] = &[

@@ -44,6 +44,8 @@ function showDocument(doc, before) {
   showSettings(doc);
   setPhase(wasPhase);
   go(wasStep);
+  complete();
+  app.picked ||= app.live !== null;
 }
 
 function chooseSeed(index) {
@@ -51,6 +53,11 @@ function chooseSeed(index) {
   app.shot = null;
   setPhase(app.phase);
   go(app.step);
+  complete();
+}
+
+/** Asks for the steps of a seed that the document left out. */
+function complete() {
   const seed = seedView();
   if (!app.live || seed.learning || seed.asked) return;
   seed.asked = true;
@@ -249,6 +256,8 @@ function start() {
   if (document_) showDocument(document_, null);
   else {
     $('status').textContent = 'connecting';
+    $('again').hidden = false;
+    $('again').addEventListener('click', () => app.live.again());
     app.live = new Live({
       message,
       connected: (on) => { if (!on) { $('status').className = 'busy'; $('status').textContent = 'the engine is not running any more'; } },

@@ -14,10 +14,14 @@ const ruleInk = (rule) => ink.rules[rule % ink.rules.length];
 /** A canvas in pixels of the screen; false while it has no size. */
 function fit(canvas) {
   const ratio = window.devicePixelRatio || 1;
-  const { clientWidth: width, clientHeight: height } = canvas;
+  const { clientWidth: width, clientHeight: height } = canvas.parentElement;
   if (width === 0 || height === 0) return null;
   const [columns, rows] = [Math.round(width * ratio), Math.round(height * ratio)];
-  if (canvas.width !== columns || canvas.height !== rows) [canvas.width, canvas.height] = [columns, rows];
+  if (canvas.width !== columns || canvas.height !== rows) {
+    [canvas.width, canvas.height] = [columns, rows];
+    // A box of a fraction of a pixel would blur every line.
+    [canvas.style.width, canvas.style.height] = [`${columns / ratio}px`, `${rows / ratio}px`];
+  }
   const pen = canvas.getContext('2d');
   pen.setTransform(ratio, 0, 0, ratio, 0, 0);
   pen.clearRect(0, 0, width, height);

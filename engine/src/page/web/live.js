@@ -26,6 +26,10 @@ class Live {
     return response.ok ? response.json() : null;
   }
 
+  again() {
+    return fetch(`/relearn?token=${encodeURIComponent(this.token)}`, { method: 'POST' });
+  }
+
   /** The steps of a seed that the document left out. */
   tracks(save, seed) {
     return this.get('/track', { save, seed });

@@ -10,11 +10,12 @@ class WorldMap {
 
   /** What stands, and where each rule fired. */
   drawBase(doc, track, litRule) {
+    const [x0, y0, x1, y1] = doc.world.bounds_m;
+    this.base.parentElement.style.setProperty('--shape', `${(x1 - x0).toFixed(2)} / ${(y1 - y0).toFixed(2)}`);
     const sheet = fit(this.base);
     if (!sheet) return;
     const { pen, width, height } = sheet;
-    const [x0, y0, x1, y1] = doc.world.bounds_m;
-    const [left, below, above, right] = [34, 24, 8, 10];
+    const [left, below, above, right] = [34, 24, 8, 16];
     const scale = Math.min((width - left - right) / (x1 - x0), (height - above - below) / (y1 - y0));
     const [spanX, spanY] = [(x1 - x0) * scale, (y1 - y0) * scale];
     const fromX = left + (width - left - right - spanX) / 2;

@@ -53,7 +53,8 @@ class States {
         type: 'button', title, class: `state${differs ? ' changed' : ''}${row.visits < 10 ? ' rare' : ''}`,
         onclick: () => this.onPick(row.state),
       }, stateIcon(doc, row, last),
-      el('span', {}, el('span', { class: 'number', text: `${row.state} ` }), short(row.values[row.best])),
+      el('span', { class: 'number', text: `no. ${row.state}` }),
+      el('span', { text: row.values[row.best].toFixed(2).replace('-', '−') }),
       el('span', { text: `${whole(row.visits)} ×` }));
       this.buttons.set(row.state, button);
       return button;
