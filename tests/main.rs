@@ -11,6 +11,8 @@ mod allocation;
 mod architecture;
 /// Every mistake that a user can make gets one clear error; the texts stand in `snapshots/`.
 mod bad_input;
+/// The page in a real browser, from a file and live; pictures of it in `target/browser`.
+mod browser;
 /// Learned policies combined: files, figures, disagreements, mistakes.
 mod combine;
 /// Same seed, same bytes: twice, with one thread or two, stored and tested again.
@@ -21,6 +23,8 @@ mod filters;
 mod ledger;
 /// A filter from the template: built, listed, checked, learned with.
 mod new_filter;
+/// The page of a run as a file: its data, its size, its policy.
+mod page;
 /// Filters listed and photographs seen through them; what cannot be seen.
 mod photos;
 /// Recorded runs through the program: replayed, explained, rescored, damaged.
@@ -31,3 +35,6 @@ mod reproduce;
 mod run_folder;
 /// Every script and world that ships can be used, and the reference pages are current.
 mod shipped;
+/// The live page by raw sockets: what is refused, what is told.
+#[cfg(feature = "serve")]
+mod watch;

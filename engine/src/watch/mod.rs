@@ -19,6 +19,3 @@ mod socket;
 pub use board::{Board, SavedRun, SeedRun};
 pub use relearn::{Relearner, WatchSettings};
 pub use server::{Address, listen};
-
-#[cfg(test)]
-mod tests;

@@ -135,7 +135,7 @@ impl Relearner {
             return Ok(());
         }
         let learned_s = started.elapsed().as_secs_f64();
-        let text = format!("save {}: {seeds} learned in {learned_s:.2} s; testing", self.save);
+        let text = format!("save {}: learned in {learned_s:.2} s; testing", self.save);
         let run = self.show(plan, learned, false, &text)?;
         let tested = in_parallel(&(0..count as u64).collect::<Vec<_>>(), self.settings.threads, |index| {
             let seed = &run.seeds[index as usize].learned;
@@ -153,7 +153,7 @@ impl Relearner {
             tested,
         });
         let tested_s = started.elapsed().as_secs_f64();
-        let text = format!("save {}: {seeds} learned in {learned_s:.2} s, tested after {tested_s:.2} s", self.save);
+        let text = format!("save {}: learned in {learned_s:.2} s, tested after {tested_s:.2} s", self.save);
         self.show(run.plan.clone(), seeds_done.collect(), true, &text).map(drop)
     }
 

@@ -225,7 +225,6 @@ function message(said) {
     $('status').className = '';
     $('status').textContent = app.doc ? 'the last good run stays on screen' : '';
     $('error').hidden = false;
-    $('error-title').textContent = `${said.error.code}: ${said.error.message}`;
     $('error-text').textContent = said.text;
     script.wrong(app.doc && said.error.file === app.doc.script_path ? said.error.line : null);
   } else if (said.kind === 'run') {

@@ -30,7 +30,7 @@ class Curve {
       return;
     }
     const windows = Math.max(...[...all, ...old].map((curve) => curve.length), Math.ceil(doc.planned_steps / doc.window_steps));
-    const [left, right, above, below] = [44, 12, 8, 34];
+    const [left, right, above, below] = [44, 22, 8, 34];
     let [low, high] = [Math.min(...values, 0), Math.max(...values, 0)];
     if (high === low) low = -1;
     const room = (high - low) * 0.06;
@@ -53,9 +53,9 @@ class Curve {
     pen.rotate(-Math.PI / 2);
     label(pen, `reinforcement per ${doc.window_steps} steps`, 0, 0, 'center', 'middle');
     pen.restore();
+    if (all.length > 1) this.band(pen, all);
     if (old.length) this.middle(pen, old, ink.before, [4, 3], 1.5);
     if (all.length > 1) {
-      this.band(pen, all);
       this.middle(pen, all, ink.accent, [2, 2], 1);
     }
     line(pen, seed.curve.map((value, index) => [x(index), y(value)]), ink.accent, 2);
