@@ -39,8 +39,11 @@ impl Ground {
     #[must_use]
     pub fn new(layout: &Layout) -> Self {
         let parts = layout.scene.parts();
-        let route = layout.lap.map(|lap| layout.routes[lap].points());
-        let route_m = route.map(|points| points.iter().map(|at| [milli(at.x), milli(at.y)]).collect::<Vec<_>>());
+        let route_m = layout.lap.map(|lap| {
+            let route = &layout.routes[lap];
+            let back = route.points().first().filter(|_| route.closed);
+            route.points().iter().chain(back).map(|at| [milli(at.x), milli(at.y)]).collect::<Vec<_>>()
+        });
         let starts: Vec<[f64; 2]> = layout.starts.iter().map(|start| [start.x_m, start.y_m]).collect();
         let driven: Vec<[f64; 2]> = route_m.iter().flatten().chain(&starts).copied().collect();
         let mut solids: Vec<&Solid> = parts.solids.iter().collect();

@@ -152,8 +152,7 @@ impl Relearner {
             test: Some(test),
             tested,
         });
-        let tested_s = started.elapsed().as_secs_f64();
-        let text = format!("save {}: learned in {learned_s:.2} s, tested after {tested_s:.2} s", self.save);
+        let text = format!("save {}: learned in {learned_s:.2} s, tested", self.save);
         self.show(run.plan.clone(), seeds_done.collect(), true, &text).map(drop)
     }
 

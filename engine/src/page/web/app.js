@@ -8,7 +8,7 @@ const app = {
 };
 const stale = { base: true, moment: true, motion: true };
 const map = new WorldMap($('map'));
-const curve = new Curve($('curve'), pickWindow);
+const curve = new Curve($('curve'), $('curve-note'), pickWindow);
 const timeline = new Timeline($('timeline'), (step) => { pause(); go(step); });
 const frames = new Frames($('frames'), $('frames-note'));
 const states = new States($('states'), $('states-note'), nextWithState);

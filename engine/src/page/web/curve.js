@@ -1,8 +1,8 @@
 // The learning curve: the seed, the band of all seeds, and the same of the save before.
 
 class Curve {
-  constructor(box, onPick) {
-    this.box = box;
+  constructor(box, note, onPick) {
+    Object.assign(this, { box, note });
     [this.base, this.over] = box.querySelectorAll('canvas');
     this.frame = null;
     const window_ = (event) => {
@@ -65,7 +65,7 @@ class Curve {
       pen.fillStyle = ink.accent;
       pen.fill();
     }
-    this.legend(pen, width - right, doc, seed, all.length, old.length, y(low + room));
+    this.legend(seed, all.length, old.length);
   }
 
   sorted(curves, index) {
@@ -90,15 +90,12 @@ class Curve {
     line(pen, points, colour, width, dash);
   }
 
-  legend(pen, right, doc, seed, seeds, old, floor) {
-    const rows = [[`seed ${seed.seed}`, ink.accent, [], 2]];
-    if (seeds > 1) rows.push([`median of ${seeds} seeds; band: 10 to 90 %`, ink.accent, [2, 2], 1]);
-    if (old) rows.push(['save before, median', ink.before, [4, 3], 1.5]);
-    rows.forEach(([words, colour, dash, width], index) => {
-      const at = floor - 6 - 15 * (rows.length - 1 - index);
-      label(pen, words, right - 34, at, 'right', 'middle', ink.quiet);
-      line(pen, [[right - 28, at], [right, at]], colour, width, dash);
-    });
+  /** What each line means; in words beside the heading, where no line can run through them. */
+  legend(seed, seeds, old) {
+    const entries = [[`seed ${seed.seed}`, 'seed']];
+    if (seeds > 1) entries.push([`median of ${seeds} seeds, band 10 to 90 %`, 'median']);
+    if (old) entries.push(['save before, median', 'before']);
+    this.note.replaceChildren(...entries.map(([words, kind]) => el('span', { class: `sign ${kind}` }, el('i'), words)));
   }
 
   /** The window of the shown step, and the one under the pointer. */
