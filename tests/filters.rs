@@ -1,12 +1,36 @@
-use engine::filter::LINKED_IN;
+use std::sync::Arc;
+
+use engine::filter::{Catalogue, Entry, Form, conformance};
 use filter_api::{Format, Frame, FrameMut};
+
+use crate::support::filters::{entries, forms};
+
+/// Every filter in every form, with words for the form. In isolation only one: each instance is a process.
+fn all() -> Vec<(&'static str, Arc<Entry>)> {
+    let mut all: Vec<_> = entries(&Catalogue::linked_in()).into_iter().map(|entry| ("linked in", entry)).collect();
+    for (form, catalogue) in forms() {
+        let of_form = entries(&catalogue).into_iter().map(|entry| (form, entry));
+        all.extend(of_form.filter(|(form, entry)| *form != "native and isolated" || entry.descriptor.name == "sobel"));
+    }
+    all
+}
+
+#[test]
+fn every_filter_keeps_the_law_in_every_form() {
+    for (form, entry) in all() {
+        let frames = conformance(&entry);
+        let frames = frames.unwrap_or_else(|error| panic!("{} ({form}): {error}", entry.descriptor.name));
+        // Defaults and the ends of all ranges at least, in one format and ten sizes, three frames each.
+        assert!(frames >= 90, "{} ({form})", entry.descriptor.name);
+    }
+}
 
 #[test]
 fn another_size_or_format_than_agreed_is_an_error_and_no_panic() {
-    for plugin in LINKED_IN {
-        let descriptor = plugin.descriptor;
+    for (form, entry) in all() {
+        let descriptor = entry.descriptor;
         let defaults: Vec<f64> = descriptor.parameters.iter().map(|parameter| parameter.default).collect();
-        let mut filter = (plugin.create)(&defaults).unwrap();
+        let mut filter = entry.start(&defaults).unwrap();
         let mut process = |format: Format, width: usize| {
             let bytes = vec![0; 12 * format.channels()];
             let mut out = vec![0; width * 3 * descriptor.writes.channels()];
@@ -15,20 +39,29 @@ fn another_size_or_format_than_agreed_is_an_error_and_no_panic() {
         };
         for format in [Format::Rgb, Format::Grey, Format::Mask] {
             let reads = descriptor.reads.contains(&format);
-            assert_eq!(process(format, 4).is_ok(), reads, "{} and {format:?}", descriptor.name);
-            assert!(process(format, 3).is_err(), "{}", descriptor.name);
+            assert_eq!(process(format, 4).is_ok(), reads, "{} ({form}) and {format:?}", descriptor.name);
+            assert!(process(format, 3).is_err(), "{} ({form})", descriptor.name);
         }
     }
 }
 
 #[test]
 fn descriptors_are_complete() {
-    for plugin in LINKED_IN {
-        let descriptor = plugin.descriptor;
-        assert!(descriptor.purpose.ends_with('.') && !descriptor.reads.is_empty(), "{}", descriptor.name);
+    for (form, entry) in all() {
+        let descriptor = entry.descriptor;
+        assert!(descriptor.purpose.ends_with('.') && !descriptor.reads.is_empty(), "{} ({form})", descriptor.name);
         assert!(!descriptor.version.is_empty() && !descriptor.licence.is_empty(), "{}", descriptor.name);
         for parameter in descriptor.parameters {
             assert!(parameter.purpose.ends_with('.') && !parameter.unit.is_empty(), "{}", parameter.name);
         }
+    }
+}
+
+#[test]
+fn a_filter_says_the_same_of_itself_in_every_form() {
+    let linked_in = Catalogue::linked_in();
+    for (form, entry) in all().into_iter().filter(|(_, entry)| entry.form != Form::LinkedIn) {
+        let own = linked_in.find(entry.descriptor.name).unwrap();
+        assert_eq!(format!("{:?}", entry.descriptor), format!("{:?}", own.descriptor), "{form}");
     }
 }

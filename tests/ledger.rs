@@ -1,7 +1,8 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use engine::experiment::{Ledger, Overrides, Phase, Plan, Playback, Snapshot, learn, learn_into, test_into};
+use engine::diagnostic::SourceText;
+use engine::experiment::{Ledger, Overrides, Phase, Plan, Playback, Snapshot, learn, learn_into, rescore, test_into};
 use engine::reward::Behaviour;
 
 use crate::support::root;
@@ -132,4 +133,48 @@ fn a_ledger_says_where_two_runs_part() {
     let (one, two) = (recorded(&plan, 1), recorded(&plan, 2));
     assert_eq!(one.first_difference(&one.clone()), None);
     assert_eq!(one.first_difference(&two), Some((0, "x")));
+}
+
+#[test]
+fn a_learner_led_along_its_own_steps_learns_its_own_table() {
+    for (script, set) in [("wall", ""), ("corridor-speed", "learner.kind=q"), ("platform", "learner.replay=3")] {
+        let mut plan = plan(script, 800);
+        if !set.is_empty() {
+            plan = plan.with_changes(&Overrides { set: vec![set.to_owned()], ..Overrides::default() }).unwrap();
+        }
+        let mut ledger = Ledger::new(&plan, 800);
+        let learned = learn_into(&plan, 9, &AtomicBool::new(false), &|_| (), &mut ledger).unwrap();
+        let same = rescore(&plan, &plan, 9, &ledger, 1).unwrap();
+        assert_eq!(same.policy_before, learned.policy, "{script}");
+        assert_eq!(same.policy_after, learned.policy, "{script}");
+        assert_eq!((same.steps_changed, same.changed_states()), (0, vec![]), "{script}");
+    }
+}
+
+#[test]
+fn more_rules_than_a_word_has_bits_are_told_apart() {
+    let rules: String =
+        (0..70).map(|rule| format!("rule \"r{rule}\" when time.step % 70 == {rule} => {rule} / 2.0;\n")).collect();
+    let script = format!("world(\"room\");\nrun(#{{ steps: 400 }});\n{rules}");
+    let path = root().join("scripts/many.rhai");
+    let behaviour = Behaviour::parse("many", SourceText::new(path, script)).unwrap();
+    let ledger = recorded(&Plan::new(Arc::new(behaviour), &Overrides::default()).unwrap(), 1);
+    for step in 0..400 {
+        let rule = (step + 1) % 70;
+        let value = rule as f64 / 2.0;
+        assert_eq!(ledger.fired(step).collect::<Vec<_>>(), [(rule, value)]);
+        assert_eq!(ledger.record(step).unwrap().reward, value);
+    }
+}
+
+#[test]
+fn many_passes_stay_within_what_the_rewards_can_add_up_to() {
+    let plan = plan("wall", 2_000);
+    let ledger = recorded(&plan, 1);
+    let rescored = rescore(&plan, &plan, 1, &ledger, 200).unwrap();
+    assert_eq!(rescored.changed_states(), Vec::<usize>::new());
+    // Punishments of -1 in every step, discounted by 0.99, come to -100.
+    let values = rescored.policy_after.rows().iter().flatten().flat_map(|row| &row.values);
+    assert!(values.clone().all(|value| (-100.0..=0.0).contains(value)));
+    assert!(values.clone().any(|value| *value < -1.0));
 }

@@ -1,6 +1,7 @@
 //! Integration tests, in one program. The table of contents:
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+#![allow(clippy::print_stdout, reason = "a test says why it was skipped")]
 
 /// Runs the engine in a scratch folder.
 mod support;
@@ -15,18 +16,29 @@ mod bad_input;
 mod browser;
 /// Learned policies combined: files, figures, disagreements, mistakes.
 mod combine;
+/// The C header says what the Rust side of the filter contract says, on 64 and on 32 bits.
+mod contract;
 /// Same seed, same bytes: twice, with one thread or two, stored and tested again.
 mod determinism;
-/// Every filter that ships keeps the contract.
+/// Every filter that ships keeps the contract, in every form.
 mod filters;
+/// One filter gives the same bytes linked in, in a native library and in WebAssembly.
+mod forms;
 /// Every step kept, and brought back by its actions.
 mod ledger;
+/// WebAssembly filters that loop, grow, trap, lie or are damaged.
+#[cfg(feature = "wasm")]
+mod modules;
+/// Native filters that are no filters, crash, exit, loop or lie.
+mod native;
 /// A filter from the template: built, listed, checked, learned with.
 mod new_filter;
 /// The page of a run as a file: its data, its size, its policy.
 mod page;
 /// Filters listed and photographs seen through them; what cannot be seen.
 mod photos;
+/// Recordings for viewers, read back by another reader.
+mod recording;
 /// Recorded runs through the program: replayed, explained, rescored, damaged.
 mod replay;
 /// The paper's claims through the program, quickly; the map that a test leaves.

@@ -127,7 +127,7 @@ fn an_explained_step_names_rule_line_fact_and_beam_and_leaves_its_pictures() {
 fn a_condition_of_many_parts_blames_the_part_that_held() {
     let bench = Bench::new();
     let rule = "rule \"both\" when (laser.left < 0.1 || laser[90] < 9.0) && !robot.fallen => action.linear - 1.0;";
-    bench.write("short.rhai", format!("{SCRIPT}{rule}\nfn reward(facts) {{ 0.5 * facts.robot.linear }}\n"));
+    bench.write("short.rhai", format!("{SCRIPT}{rule}\nfn reward(facts) {{ 0.5 * facts.robot.linear - facts.laser.sector(40, 60).nearest / 100.0 }}\n"));
     bench.engine(&["run", "short.rhai", "--out", "a"]);
     let explained = json(&bench, &["explain", "a", "--step", "0"]);
     let both = &explained["rules"][2];
@@ -138,6 +138,9 @@ fn a_condition_of_many_parts_blames_the_part_that_held() {
     assert_eq!(both["parts"][1]["facts"][0]["beam"], 90);
     let reward = &explained["rules"][3];
     assert_eq!((&reward["name"], &reward["parts"][0]["facts"][0]["name"]), (&"reward".into(), &"robot.linear".into()));
+    let sector = &reward["parts"][0]["facts"][1];
+    assert_eq!(sector["name"], "laser.sector(40, 60).nearest");
+    assert!((40..=60).contains(&sector["beam"].as_u64().unwrap()));
     let sum: f64 = [both, reward].iter().map(|rule| rule["added"].as_f64().unwrap()).sum();
     assert!((explained["reward"].as_f64().unwrap() - sum).abs() < 1e-12);
     let listed = json(&bench, &["replay", "a", "--from", "0", "--to", "0"]);
@@ -150,6 +153,8 @@ fn the_page_of_a_code_is_printed_and_a_wrong_code_gets_the_nearest() {
     let bench = Bench::new();
     let page = json(&bench, &["explain", "E-SCRIPT-FACT"]);
     assert!(page["page"].as_str().unwrap().contains("scripts/README.md"));
+    assert_eq!(json(&bench, &["explain", "e-script-fact"]), page);
+    assert!(bench.failure(&["explain", "E-SCRIPT-FACT", "--step", "3"]).starts_with("exit status 2"));
     let told = bench.failure(&["explain", "E-SCRIPT-FACTS"]);
     assert!(told.starts_with("exit status 2") && told.contains("did you mean 'E-SCRIPT-FACT'?"), "{told}");
 }
@@ -182,6 +187,7 @@ fn another_reward_is_told_by_rule_and_by_state() {
     assert!(!changed.is_empty());
     for state in changed {
         assert_ne!(state["before"]["action"], state["after"]["action"]);
+        assert!(state["gain"].as_f64().unwrap() >= 0.0);
         let tried = |side: &str| state[side]["tried"].as_u64().unwrap();
         assert!(tried("before") + tried("after") <= state["visits"].as_u64().unwrap());
     }

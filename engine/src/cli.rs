@@ -96,6 +96,12 @@ pub(crate) struct RunArguments {
     /// The folder for the results [default: runs/BEHAVIOUR/SEED]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Record learning and test for Foxglove or Rerun, as an MCAP file; of one seed
+    #[arg(long, value_name = "FILE.mcap")]
+    pub(crate) record: Option<PathBuf>,
+    /// The steps from one recorded image to the next
+    #[arg(long, default_value = "10", value_parser = count, allow_hyphen_values = true, value_name = "N")]
+    pub(crate) record_every: u64,
     /// Print the summary as JSON on standard output, and nothing else there
     #[arg(long)]
     pub(crate) json: bool,

@@ -10,10 +10,10 @@
  *   - Everything that a filter_plugin points to lives as long as the library.
  *
  * A filter is one file: define the three functions, fill a filter_plugin, and end with FILTER_EXPORT. See
- * ../examples/invert.c. Nothing but this header is needed, for a native library or for WebAssembly:
+ * ../examples/contrast.c. Nothing but this header is needed, for a native library or for WebAssembly:
  *
- *   cc -O2 -shared -fPIC -o invert.so invert.c
- *   clang --target=wasm32 -O2 -nostdlib -Wl,--no-entry -o invert.wasm invert.c
+ *   cc -O2 -shared -fPIC -I. -o contrast.so ../examples/contrast.c
+ *   clang --target=wasm32 -O2 -nostdlib -Wl,--no-entry -I. -o contrast.wasm ../examples/contrast.c
  */
 #ifndef ENGINE_FILTER_H
 #define ENGINE_FILTER_H
@@ -92,8 +92,9 @@ typedef struct filter_plugin {
     uint32_t parameter_count;
     const filter_parameter *parameters;
 
-    /* Makes an instance from parameter_count finite values, in order and within their ranges. On failure *instance is
-     * left alone and the message, FILTER_MESSAGE_BYTES long, says why. */
+    /* Makes an instance from parameter_count finite values, in order and within their ranges. *instance may be set to
+     * NULL by a filter that keeps nothing. On failure it is left alone and the message, FILTER_MESSAGE_BYTES long, says
+     * why. */
     int32_t (*create)(const double *values, uint32_t count, void **instance, char *message);
 
     /* Writes every pixel of output, which is as wide and as high as input and has the format `writes`. */
@@ -103,7 +104,7 @@ typedef struct filter_plugin {
     void (*destroy)(void *instance);
 } filter_plugin;
 
-/* FILTER_EXPORT(.name = FILTER_TEXT("invert"), ...); makes the library's one filter known to the host: everything of
+/* FILTER_EXPORT(.name = FILTER_TEXT("contrast"), ...); makes the library's one filter known to the host: everything of
  * filter_plugin from `name` on. Version and sizes are filled in. Once, at the end of the file. */
 #define FILTER_PLUGIN_OF(...)                                                                                          \
     { FILTER_ABI_VERSION, (uint32_t)sizeof(filter_plugin), (uint32_t)sizeof(filter_parameter),                         \

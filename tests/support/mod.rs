@@ -1,5 +1,7 @@
 //! Runs the engine in a scratch folder.
 
+pub(crate) mod filters;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 

@@ -64,7 +64,8 @@ pub(crate) struct RescoreArguments {
     pub(crate) run: PathBuf,
     /// The script with the other rules
     pub(crate) script: PathBuf,
-    /// How often the learner goes over the recorded steps: once is what it would have learned from them as they came
+    /// How often to go over the recorded steps: 1 is what the run's own learner would have learned from them; more
+    /// is one-step Q-learning until the values settle, with 50 or so
     #[arg(long, default_value = "1", value_parser = passes, allow_hyphen_values = true, value_name = "N")]
     pub(crate) passes: u64,
     /// The folder for rescore.json and the pictures [default: RUN/rescore-SCRIPT]

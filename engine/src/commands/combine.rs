@@ -13,7 +13,7 @@ use engine::report::{disagreements_csv, write_atomic};
 use engine::robot::SimulatedRobot;
 use engine::store::{RunLog, load_members, run_to_toml};
 
-use super::folder::{RunFolder, create, draw_frame, draw_trails, write_json, write_log, write_page};
+use super::folder::{RunFolder, create, draw_frame, draw_trails, write_json, write_log};
 use super::run::print_many;
 use super::stop::{INTERRUPTED, on_ctrl_c};
 use super::test::print_figures;
@@ -91,7 +91,7 @@ fn write_seed(folder: &Path, plan: &Plan, members: &[Member], result: &SeedResul
     let test = Some(&result.summary.test);
     let (learning, tested) = (&result.log.learning, &result.log.test);
     let data = SeedData { seed: result.summary.seed, tally: None, policy: None, test, learning, tested };
-    write_page(folder, plan, &[data])
+    super::page::write(folder, plan, &[data])
 }
 
 fn print_one(console: &mut Console, result: &SeedResult) -> std::result::Result<(), ConsoleError> {

@@ -29,8 +29,14 @@ struct Report {
 }
 
 pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
-    if arguments.topic.starts_with("E-") || arguments.topic.starts_with("W-") {
-        return code(&arguments.topic, console);
+    let topic = arguments.topic.to_uppercase();
+    let is_code = topic.starts_with("E-") || topic.starts_with("W-");
+    if is_code && !Path::new(&arguments.topic).exists() {
+        if arguments.step.is_some() || arguments.test || arguments.out.is_some() {
+            let error = Diagnostic::new(Kind::Usage, "E-CODE", "the page of a code has no steps and no pictures");
+            return Err(Box::new(error.help(format!("write: engine explain {}", printable(&topic)))).into());
+        }
+        return code(&topic, console);
     }
     let Some(step) = arguments.step else {
         let error = Diagnostic::new(Kind::Usage, "E-LOG-STEP", "which step is to be explained?");
@@ -118,8 +124,12 @@ fn print(console: &mut Console, plan: &Plan, report: &Report) -> std::result::Re
         reasons.step,
         short(reasons.time_s)
     ))?;
-    let how = if reasons.explored { "tried, not the best one known" } else { "the best one known" };
-    console.line(&format!("action:    {} ({how})", motion(reasons.motion)))?;
+    let how = match reasons.explored {
+        _ if !plan.settings.policies.is_empty() => "",
+        true => " (tried, not the best one known)",
+        false => " (the best one known)",
+    };
+    console.line(&format!("action:    {}{how}", motion(reasons.motion)))?;
     let columns = plan.settings.grid.columns as usize;
     let (from, to) = (icon(&reasons.state.cells, columns), icon(&reasons.next_state.cells, columns));
     for (line, (from, to)) in from.iter().zip(&to).enumerate() {

@@ -2,38 +2,23 @@
 
 use std::path::{Path, PathBuf};
 
+use super::page::write_page;
 use engine::diagnostic::{Diagnostic, Kind, Result};
 use engine::experiment::{CertaintyGrid, Learned, Member, Plan, Spread, Summary, TestRun, Trail, WINDOW_STEPS};
 use engine::geometry::Point2;
-use engine::page::{Document, Moments, SeedData, page};
 use engine::report::{
     CurveData, CurveRow, PolicyData, PolicyState, TrajectoryData, certainty_grid, curve_csv, learning_curve, policy,
     snapshot_frame, trajectories, write_atomic,
 };
 use engine::store::{LOG_FILE, RunLog, policy_to_toml, run_to_toml};
 
-/// Moments of each phase that the page shows in pictures.
-const SHOTS: usize = 60;
-
 /// One seed's results.
 pub(super) struct SeedResult {
     pub(super) learned: Learned,
     pub(super) tested: TestRun,
     pub(super) summary: Summary,
-    pub(super) log: RunLog,
-}
-
-impl SeedResult {
-    fn page_data(&self) -> SeedData<'_> {
-        SeedData {
-            seed: self.summary.seed,
-            tally: Some(&self.learned.tally),
-            policy: Some(&self.learned.policy),
-            test: Some(&self.tested.figures),
-            learning: &self.log.learning,
-            tested: &self.log.test,
-        }
-    }
+    /// Every step, of a run of one seed.
+    pub(super) log: Option<RunLog>,
 }
 
 /// A folder for one run, of one seed or many.
@@ -53,11 +38,21 @@ impl RunFolder {
         &self.path
     }
 
-    /// Writes the policy of a seed that a failure ended; of many seeds, each has its folder.
-    pub(super) fn keep(&self, plan: &Plan, learned: &Learned, many: bool) -> Result<PathBuf> {
-        let folder = if many { self.path.join(learned.seed.to_string()) } else { self.path.clone() };
+    /// Of many seeds, each has its folder.
+    fn of_seed(&self, seed: u64, many: bool) -> Result<PathBuf> {
+        let folder = if many { self.path.join(seed.to_string()) } else { self.path.clone() };
         create(&folder)?;
-        let path = folder.join("policy.toml");
+        Ok(folder)
+    }
+
+    /// Writes the log of a seed as soon as it is done, so that no more of them are in memory than threads.
+    pub(super) fn keep_log(&self, plan: &Plan, seed: u64, log: &RunLog, many: bool) -> Result<()> {
+        write_log(&self.of_seed(seed, many)?, plan, &[], seed, log)
+    }
+
+    /// Writes the policy of a seed that a failure ended.
+    pub(super) fn keep(&self, plan: &Plan, learned: &Learned, many: bool) -> Result<PathBuf> {
+        let path = self.of_seed(learned.seed, many)?.join("policy.toml");
         write_atomic(&path, policy_text(plan, learned)?.as_bytes())?;
         Ok(path)
     }
@@ -68,7 +63,7 @@ impl RunFolder {
         write_seed(&self.path, plan, result)?;
         draw_curve(&self.path, plan, &[result])?;
         draw_seed(&self.path, plan, result)?;
-        write_page(&self.path, plan, &[result.page_data()])
+        write_page(&self.path, plan, std::slice::from_ref(result))
     }
 
     fn write_many(&self, plan: &Plan, results: &[SeedResult]) -> Result<()> {
@@ -88,7 +83,7 @@ impl RunFolder {
             Some(worst) => draw_seed(&self.path.join(worst.summary.seed.to_string()), plan, worst)?,
             None => return Ok(()),
         }
-        write_page(&self.path, plan, &results.iter().map(SeedResult::page_data).collect::<Vec<_>>())
+        write_page(&self.path, plan, results)
     }
 }
 
@@ -143,14 +138,7 @@ fn write_seed(folder: &Path, plan: &Plan, result: &SeedResult) -> Result<()> {
         .collect();
     write_atomic(&folder.join("curve.csv"), curve_csv(WINDOW_STEPS, &rules, &rows).as_bytes())?;
     let table = policy_text(plan, &result.learned)?;
-    write_atomic(&folder.join("policy.toml"), table.as_bytes())?;
-    write_log(folder, plan, &[], result.summary.seed, &result.log)
-}
-
-/// Writes `report.html`: the page with all of the run in it.
-pub(super) fn write_page(folder: &Path, plan: &Plan, seeds: &[SeedData<'_>]) -> Result<()> {
-    let document = Document::new(plan, seeds, Moments { shots: SHOTS, scans: true, seeds: None })?;
-    write_atomic(&folder.join("report.html"), page(Some(&document))?.html.as_bytes())
+    write_atomic(&folder.join("policy.toml"), table.as_bytes())
 }
 
 /// Writes `log.bin`, which names the run that it belongs to.

@@ -6,6 +6,7 @@ pub(crate) mod explain;
 pub(crate) mod filter;
 mod folder;
 pub(crate) mod new;
+mod page;
 pub(crate) mod plugins;
 pub(crate) mod reference;
 pub(crate) mod replay;

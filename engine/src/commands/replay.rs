@@ -26,7 +26,9 @@ struct Report {
     seed: u64,
     /// `learning` or `test`.
     phase: &'static str,
+    /// Steps that were done, and how many of them, from the first, are in the log.
     steps: u64,
+    kept: usize,
     rules: Vec<RuleEntry>,
     listed: Vec<StepEntry>,
 }
@@ -87,6 +89,7 @@ pub(crate) fn run(arguments: &ReplayArguments, console: &mut Console) -> std::re
         seed: *seed,
         phase: name,
         steps: ledger.steps(),
+        kept: ledger.len(),
         rules: rules(plan, ledger),
         listed: listed.filter_map(|step| entry(plan, ledger, step)).collect(),
     };
@@ -166,9 +169,10 @@ fn entry(plan: &Plan, ledger: &Ledger, step: usize) -> Option<StepEntry> {
 }
 
 fn print(console: &mut Console, report: &Report) -> std::result::Result<(), ConsoleError> {
-    let Report { behaviour, world, seed, phase, steps, .. } = report;
+    let Report { behaviour, world, seed, phase, steps, kept, .. } = report;
     console.line(&format!("behaviour: {behaviour} in {world}, seed {seed}"))?;
-    console.line(&format!("played:    {steps} steps of {phase}; each is the recorded one, bit for bit"))?;
+    let of = if *steps == *kept as u64 { String::new() } else { format!(" of {steps}") };
+    console.line(&format!("played:    {kept}{of} steps of {phase}; each is the recorded one, bit for bit"))?;
     console.line(&format!("{:20} {:>8} {:>10} {:>8} {:>8}", "rule", "fired", "total", "first", "last"))?;
     let step = |step: Option<usize>| step.map_or("-".to_owned(), |step| step.to_string());
     for RuleEntry { name, score, first_step, last_step } in &report.rules {

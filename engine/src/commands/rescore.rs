@@ -26,7 +26,9 @@ struct Report {
     script: String,
     world: String,
     seed: u64,
+    /// Steps in the log, and how many the run did: a log holds the first million.
     steps: usize,
+    steps_done: u64,
     passes: u64,
     /// By rule; null where a script has no such rule.
     rules: Vec<RuleChange>,
@@ -51,6 +53,8 @@ struct StateEntry {
     visits: u64,
     before: Choice,
     after: Choice,
+    /// By how much the new reward values the new action above the old one; next to nothing is a draw.
+    gain: f64,
 }
 
 /// The best action of a state.
@@ -83,6 +87,7 @@ pub(crate) fn run(arguments: &RescoreArguments, console: &mut Console) -> std::r
         world: plan.layout.name.clone(),
         seed,
         steps: log.learning.len(),
+        steps_done: log.learning.steps(),
         passes: arguments.passes,
         rules: rescored.rules.clone(),
         reward_before: rescored.reward_before,
@@ -111,8 +116,10 @@ fn entry(plan: &Plan, rescored: &Rescored, state: usize) -> Result<Option<StateE
     let (Some(before), Some(after)) = (choice(&rescored.policy_before), choice(&rescored.policy_after)) else {
         return Ok(None);
     };
+    let row = rescored.policy_after.rows().get(state).and_then(Option::as_ref);
+    let gain = row.map_or(0.0, |row| after.value - row.values[before.action]);
     let cells = plan.grid()?.cells(state);
-    Ok(Some(StateEntry { state, cells, visits: rescored.visits(state), before, after }))
+    Ok(Some(StateEntry { state, cells, visits: rescored.visits(state), before, after, gain }))
 }
 
 fn write(out: &Path, plan: &Plan, report: &Report) -> Result<()> {
@@ -170,6 +177,9 @@ fn print(console: &mut Console, plan: &Plan, report: &Report, out: &Path) -> std
         signed(change)
     ))?;
     console.line(&format!("changed:   the reward of {} steps", report.steps_changed))?;
+    if report.steps_done > report.steps as u64 {
+        console.line(&format!("note:      the log holds only the beginning of {} steps", report.steps_done))?;
+    }
     if report.new_recoveries > 0 {
         console.line(&format!(
             "note:      {} steps would have ended in recovery; the recorded robot went on from there",
@@ -188,7 +198,7 @@ fn print(console: &mut Console, plan: &Plan, report: &Report, out: &Path) -> std
 
 fn print_states(console: &mut Console, plan: &Plan, report: &Report) -> std::result::Result<(), ConsoleError> {
     let changed = &report.states_changed;
-    let passes = if report.passes == 1 { String::new() } else { format!(" in {} passes", report.passes) };
+    let passes = if report.passes == 1 { String::new() } else { format!(" in {} passes of Q-learning", report.passes) };
     console.line(&format!(
         "learned:   {} of {} states change their best action when the same steps are learned anew{passes}",
         changed.len(),
@@ -208,7 +218,12 @@ fn print_states(console: &mut Console, plan: &Plan, report: &Report) -> std::res
         let words = [
             format!("state {}, {} visits", entry.state, entry.visits),
             format!("  before: {} ({})", motion(entry.before.motion), guess(&entry.before)),
-            format!("  after:  {} ({})", motion(entry.after.motion), guess(&entry.after)),
+            format!(
+                "  after:  {} ({}; {} better than the old one)",
+                motion(entry.after.motion),
+                guess(&entry.after),
+                short(entry.gain)
+            ),
         ];
         let cells = icon(&entry.cells, columns);
         let blank = " ".repeat(2 * columns.max(1) - 1);

@@ -5,8 +5,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use engine::diagnostic::Result;
-use engine::experiment::{Overrides, Plan, Progress, Spread, Summary, in_parallel, learn_into, test_into};
+use engine::diagnostic::{Diagnostic, Kind, Result};
+use engine::experiment::{Overrides, Phase, Plan, Progress, Spread, Summary, in_parallel, learn_into, test_into};
+use engine::record::{self, record};
 use engine::reward::Behaviour;
 use engine::store::RunLog;
 
@@ -26,12 +27,26 @@ pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::resul
     if !plan.settings.policies.is_empty() {
         return super::combine::run(arguments, &plan, &seeds, &path, console);
     }
+    if let Some(path) = &arguments.record {
+        check_record(path, &seeds)?;
+    }
     let folder = RunFolder::create(&path, &plan, &[], arguments.seed)?;
 
     let stop = on_ctrl_c()?;
     let threads = arguments.threads.unwrap_or(0) as usize;
     let results = learn_all(&plan, &folder, &seeds, threads, &stop, console)?;
     folder.write(&plan, &results)?;
+    if let (Some(path), [SeedResult { log: Some(log), .. }]) = (&arguments.record, results.as_slice()) {
+        let phases = [(Phase::Learning, &log.learning), (Phase::Test, &log.test)];
+        let recording = record(&plan, arguments.seed, &phases, arguments.record_every, path)?;
+        console.note(&format!(
+            "recorded {} steps and {} images in {} ({} KiB)",
+            recording.steps,
+            recording.images,
+            path.display(),
+            recording.bytes / 1024
+        ));
+    }
 
     let interrupted = stop.load(Ordering::Relaxed);
     let good = if let [result] = results.as_slice() {
@@ -50,6 +65,14 @@ pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::resul
         return Ok(INTERRUPTED);
     }
     Ok(u8::from(!good))
+}
+
+fn check_record(path: &Path, seeds: &[u64]) -> Result<()> {
+    if seeds.len() > 1 {
+        let error = Diagnostic::new(Kind::Usage, "E-RECORD", "a recording is of one seed");
+        return error.help("leave --seeds out, and choose the seed with --seed").into();
+    }
+    record::check(path)
 }
 
 fn out(arguments: &RunArguments, name: &str, seeds: &[u64]) -> PathBuf {
@@ -97,6 +120,8 @@ fn learn_all(
         if bar.is_hidden() && !plain {
             console.note(&format!("seed {seed}: {}", one_line(&summary)));
         }
+        folder.keep_log(plan, seed, &log, seeds.len() > 1)?;
+        let log = (seeds.len() == 1).then_some(log);
         Ok(SeedResult { learned, tested, summary, log })
     });
     bar.finish_and_clear();

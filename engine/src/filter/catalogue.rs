@@ -69,6 +69,16 @@ pub struct Entry {
     pub(super) create: Create,
 }
 
+impl Entry {
+    /// An instance with one value for each parameter, each within its range; whether it keeps the law is not tried.
+    ///
+    /// # Errors
+    /// If the filter refuses the values, breaks down, or is stopped by a limit.
+    pub fn start(&self, values: &[f64]) -> Result<Box<dyn Running>> {
+        (self.create)(values)
+    }
+}
+
 /// A file of a folder, opened when it is first asked for.
 struct File {
     name: String,

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use filter_api::abi::{ABI_VERSION, PLUGIN_SYMBOL, RawFrame, RawParameter, RawPlugin};
-use object::{Architecture, Object, ObjectSegment, ObjectSymbol};
+use object::{Architecture, BinaryFormat, Object, ObjectSegment, ObjectSymbol};
 
 use crate::diagnostic::{Diagnostic, Kind, Result, printable};
 
@@ -21,6 +21,9 @@ pub(super) fn check(path: &Path, bytes: &[u8]) -> Result<()> {
 fn fault(bytes: &[u8]) -> Option<(String, String)> {
     let say = |what: &str, help: &str| Some((what.to_owned(), help.to_owned()));
     let Ok(file) = object::File::parse(bytes) else {
+        if bytes.starts_with(b"\x7fELF") {
+            return say("is a damaged native library", "copy or build it again; a part of the file may be missing");
+        }
         return say("is not a native library", "build one: cargo build --release, or cc -shared");
     };
     let machine = match std::env::consts::ARCH {
@@ -39,7 +42,9 @@ fn fault(bytes: &[u8]) -> Option<(String, String)> {
     if !file.segments().all(|segment| within(segment.file_range())) {
         return say("ends too early", "copy or build it again; a part of the file is missing");
     }
-    let Some(symbol) = file.dynamic_symbols().find(|symbol| symbol.is_definition() && is_plugin(symbol.name())) else {
+    let Some(symbol) =
+        file.dynamic_symbols().find(|symbol| symbol.is_definition() && is_plugin(file.format(), symbol.name()))
+    else {
         let what = format!("is a library, but not a filter: it has no '{PLUGIN_SYMBOL}'");
         return Some((what, "end the filter with filter_api::export!(PLUGIN), or FILTER_EXPORT in C".to_owned()));
     };
@@ -49,8 +54,10 @@ fn fault(bytes: &[u8]) -> Option<(String, String)> {
     wrong_version(head, symbol.size())
 }
 
-fn is_plugin(name: object::read::Result<&str>) -> bool {
-    name.is_ok_and(|name| name.trim_start_matches('_') == PLUGIN_SYMBOL)
+/// Whether the loader will find a symbol of this name in the file when it is asked for the plugin.
+fn is_plugin(format: BinaryFormat, name: object::read::Result<&str>) -> bool {
+    let prefix = if format == BinaryFormat::MachO { "_" } else { "" };
+    name.is_ok_and(|name| name.strip_prefix(prefix) == Some(PLUGIN_SYMBOL))
 }
 
 /// Compares the first four numbers of a plugin, which stand in the file as they will stand in memory.

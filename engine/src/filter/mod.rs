@@ -19,5 +19,6 @@ mod worker;
 pub use catalogue::{Catalogue, Entry, Form, LINKED_IN, Sources};
 pub use chain::{Chain, ChainError};
 pub use conformance::conformance;
+pub use running::Running;
 pub use trust::Trust;
 pub use worker::serve;

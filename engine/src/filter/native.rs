@@ -11,13 +11,13 @@ use std::ptr::null_mut;
 use filter_api::abi::{
     MESSAGE_BYTES, OK, PANIC, PLUGIN_SYMBOL, RawDestroy, RawFrame, RawParameter, RawPlugin, RawProcess, RawText,
 };
-use filter_api::{Format, Frame, FrameMut};
+use filter_api::{Descriptor, Format, Frame, FrameMut};
 use libloading::Library;
 
 use super::catalogue::{Entry, Form};
 use super::described::{Described, DescribedParameter, LONGEST_TEXT_BYTES, MOST_PARAMETERS};
 use super::library;
-use super::running::{Running, failed, refused};
+use super::running::{Running, check_frames, failed, refused};
 use super::trust::Trust;
 use crate::diagnostic::{Diagnostic, Kind, Result, printable};
 
@@ -35,7 +35,7 @@ pub(super) fn open(path: &Path, trust: &Trust) -> Result<Entry> {
         let native = Native::new(plugin, values).map_err(|Failure { panicked, words }| {
             if panicked { failed("E-FILTER-CRASH", name, &words) } else { refused(&words) }
         })?;
-        Ok(Box::new(InProcess { name, native }))
+        Ok(Box::new(InProcess { descriptor, native }))
     };
     let create = Box::new(create);
     Ok(Entry { descriptor, form: Form::Native, path: Some(path.to_owned()), sha256: Some(sha256), create })
@@ -170,14 +170,15 @@ impl Native {
 
 /// A native filter in this process.
 struct InProcess {
-    name: &'static str,
+    descriptor: &'static Descriptor,
     native: Native,
 }
 
 impl Running for InProcess {
     fn process(&mut self, input: Frame<'_>, output: FrameMut<'_>) -> Result<()> {
+        check_frames(self.descriptor, &input, &output)?;
         self.native.process(input, output).map_err(|Failure { panicked, words }| {
-            failed(if panicked { "E-FILTER-CRASH" } else { "E-FILTER" }, self.name, &words)
+            failed(if panicked { "E-FILTER-CRASH" } else { "E-FILTER" }, self.descriptor.name, &words)
         })
     }
 }

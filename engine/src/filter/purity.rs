@@ -9,8 +9,8 @@ use crate::diagnostic::Result;
 
 const WIDTH_PX: usize = 24;
 const HEIGHT_PX: usize = 16;
-/// The first frame comes again after the others, and a fresh instance sees it too.
-const ORDER: [u32; 5] = [0, 1, 2, 1, 0];
+/// One frame comes twice in a row, so that what flips with every frame shows, and the first comes again after all others.
+const ORDER: [u32; 5] = [0, 1, 1, 2, 0];
 
 /// Runs a filter with its parameters over a few frames of noise.
 ///
@@ -19,12 +19,13 @@ const ORDER: [u32; 5] = [0, 1, 2, 1, 0];
 pub(super) fn check(entry: &Entry, values: &[f64], reads: Format) -> Result<()> {
     let writes = entry.descriptor.writes;
     let mut first: [Option<Vec<u8>>; 3] = [None, None, None];
-    for _ in 0..2 {
+    for round in 0..2 {
         let mut running = (entry.create)(values)?;
-        for frame in ORDER {
+        for (index, frame) in ORDER.into_iter().enumerate() {
             let pixels = noise(frame, reads, WIDTH_PX * HEIGHT_PX);
             // What stood in the output before must not matter either.
-            let mut out = vec![frame as u8; WIDTH_PX * HEIGHT_PX * writes.channels()];
+            let before = (round * ORDER.len() + index) as u8;
+            let mut out = vec![before; WIDTH_PX * HEIGHT_PX * writes.channels()];
             let input = Frame::new(WIDTH_PX, HEIGHT_PX, reads, &pixels);
             let (Ok(input), Ok(output)) = (input, FrameMut::new(WIDTH_PX, HEIGHT_PX, writes, &mut out)) else {
                 return broken(entry, "the sizes of its frames are impossible");

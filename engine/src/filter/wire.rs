@@ -90,7 +90,7 @@ pub(super) fn read_reply(from: &mut impl Read) -> Result<Reply> {
 /// Answers requests until the host closes the channel.
 pub(super) fn serve(from: &mut impl Read, to: &mut impl Write, plugin: Loaded) -> Result<()> {
     let mut instance: Option<Native> = None;
-    let (mut input, mut output) = (Vec::new(), Vec::new());
+    let (mut input, mut output, mut frames) = (Vec::new(), Vec::new(), 0_u8);
     loop {
         let request = match read_array(from) {
             Ok([request]) => request,
@@ -107,7 +107,12 @@ pub(super) fn serve(from: &mut impl Read, to: &mut impl Write, plugin: Loaded) -
                     Vec::new()
                 })
             }
-            (PROCESS, Some(native)) => process(from, native, &mut input, &mut output)?.map(|()| output.clone()),
+            (PROCESS, Some(native)) => {
+                frames = frames.wrapping_add(1);
+                // What a filter leaves out must not look the same twice: the law says that it fills every pixel.
+                output.fill(frames);
+                process(from, native, &mut input, &mut output)?.map(|()| output.clone())
+            }
             _ => return Err(Error::new(ErrorKind::InvalidData, "not a request")),
         };
         let reply = match done {
@@ -132,7 +137,7 @@ fn process(
     };
     let (reads, writes) = (format()?, format()?);
     input.resize(width * height * reads.channels(), 0);
-    output.resize(width * height * writes.channels(), 0);
+    output.resize(width * height * writes.channels(), 1);
     from.read_exact(input)?;
     let frame = Frame::new(width, height, reads, input).map_err(|error| invalid(error.0))?;
     let to = FrameMut::new(width, height, writes, output).map_err(|error| invalid(error.0))?;

@@ -8,14 +8,14 @@ use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
-use filter_api::{Frame, FrameMut};
+use filter_api::{Descriptor, Frame, FrameMut};
 
 use super::catalogue::{Entry, Form};
 use super::described::Described;
-use super::library;
-use super::running::{Running, failed, refused};
+use super::running::{Running, check_frames, failed, refused};
 use super::trust::Trust;
 use super::wire::{Reply, Request, read_reply, write_request};
+use super::{library, native};
 use crate::diagnostic::{Diagnostic, Kind, Result, printable};
 
 /// How long a library may take to load, or to create an instance.
@@ -37,7 +37,7 @@ pub(super) fn open(path: &Path, trust: &Trust, program: &Path) -> Result<Entry> 
     let name = descriptor.name;
     let create = move |values: &[f64]| -> Result<Box<dyn Running>> {
         let worker = launch.create(name, values)?;
-        Ok(Box::new(Isolated { name, launch: launch.clone(), values: values.to_vec(), worker, frames: 0 }))
+        Ok(Box::new(Isolated { descriptor, launch: launch.clone(), values: values.to_vec(), worker, frames: 0 }))
     };
     let create = Box::new(create);
     Ok(Entry { descriptor, form: Form::Native, path: Some(path.to_owned()), sha256: Some(sha256), create })
@@ -62,7 +62,12 @@ impl Launch {
         };
         let described = match worker.receive(START) {
             Ok(Reply::Done(described)) => described,
-            Ok(Reply::Failed(words) | Reply::Panicked(words)) => return Err(broken(printable(&words))),
+            Ok(Reply::Failed(words)) => {
+                let (what, help) = words.split_once('\n').unwrap_or((&words, ""));
+                let error = Diagnostic::new(Kind::Input, "E-NATIVE-ABI", printable(what));
+                return error.help(printable(help)).into();
+            }
+            Ok(Reply::Panicked(words)) => return Err(broken(printable(&words))),
             Err(why) => return Err(broken(why)),
         };
         let described = serde_json::from_slice(&described).map_err(|error| broken(error.to_string()))?;
@@ -82,7 +87,7 @@ impl Launch {
 
 /// A filter in a worker.
 struct Isolated {
-    name: &'static str,
+    descriptor: &'static Descriptor,
     launch: Launch,
     values: Vec<f64>,
     worker: Worker,
@@ -91,14 +96,15 @@ struct Isolated {
 
 impl Running for Isolated {
     fn process(&mut self, input: Frame<'_>, mut output: FrameMut<'_>) -> Result<()> {
-        let index = self.frames;
+        check_frames(self.descriptor, &input, &output)?;
+        let (index, name) = (self.frames, self.descriptor.name);
         self.frames += 1;
-        let crashed = |why: &str| failed("E-FILTER-CRASH", self.name, &format!("frame {index}: {why}"));
+        let crashed = |why: &str| failed("E-FILTER-CRASH", name, &format!("frame {index}: {why}"));
         let request = Request::Process { input, writes: output.format() };
         let mut reply = self.worker.ask(&request, FRAME);
         if reply.is_err() && !self.worker.late {
             // The same frame and parameters give the same output, so nothing is lost by asking another worker.
-            self.worker = self.launch.create(self.name, &self.values)?;
+            self.worker = self.launch.create(name, &self.values)?;
             reply = self.worker.ask(&request, FRAME);
         }
         match reply {
@@ -107,7 +113,7 @@ impl Running for Isolated {
                 Ok(())
             }
             Ok(Reply::Done(_)) => Err(crashed("its worker sent a frame of another size")),
-            Ok(Reply::Failed(words)) => Err(failed("E-FILTER", self.name, &words)),
+            Ok(Reply::Failed(words)) => Err(failed("E-FILTER", name, &words)),
             Ok(Reply::Panicked(words)) | Err(words) => Err(crashed(&words)),
         }
     }
@@ -198,8 +204,15 @@ pub fn serve(path: &Path, trust: &Trust) -> Result<()> {
     let mut output = replies_apart_from_prints().map_err(lost)?;
     let (bytes, _) = trust.read(path)?;
     library::check(path, &bytes)?;
-    let plugin = super::native::load(path, &bytes)?;
-    let described = super::native::describe(plugin, path)?;
+    let loaded = native::load(path, &bytes).and_then(|plugin| Ok((plugin, native::describe(plugin, path)?)));
+    let (plugin, described) = match loaded {
+        Ok(loaded) => loaded,
+        Err(error) => {
+            let words = format!("{}\n{}", error.message, error.help.as_deref().unwrap_or_default());
+            super::wire::write_reply(&mut output, &Reply::Failed(words)).map_err(lost)?;
+            return Err(error);
+        }
+    };
     let words = serde_json::to_vec(&described).unwrap_or_default();
     super::wire::write_reply(&mut output, &Reply::Done(words)).map_err(lost)?;
     super::wire::serve(&mut std::io::stdin().lock(), &mut output, plugin).map_err(lost)

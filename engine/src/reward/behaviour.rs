@@ -82,7 +82,9 @@ impl Behaviour {
             let text = code.source.text[code.source.line_range(line)].trim().to_owned();
             RuleText { name: "reward".to_owned(), line, text }
         }));
-        let reward_parts = reward.as_ref().map_or_else(Vec::new, |span| readings::function_parts(&code, span));
+        let mut compiler = Compiler { constants: &constants, needs: &mut needs };
+        let parts = |span| readings::function_parts(&code, &ast, span, &mut compiler);
+        let reward_parts = reward.as_ref().map_or_else(Vec::new, parts);
         let loaded = Arc::new(Loaded { code, engine, ast, constants, rules, needs, reward, reward_parts, calibrate });
         let behaviour = Self { name: name.to_owned(), settings, places, rules: texts, loaded };
         behaviour.check()?;

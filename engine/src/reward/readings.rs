@@ -7,7 +7,7 @@ use super::expression::{Flag, Inputs, Number, Slot};
 use super::fact_table::{self, FACTS, Fact, Getter};
 use super::facts::{decimal, greatest, least};
 use super::source::Code;
-use rhai::{ASTNode, Expr, Position};
+use rhai::{AST, ASTNode, Expr};
 use std::ops::Range;
 
 /// A part of a condition, with what it read in one step.
@@ -73,24 +73,38 @@ pub(super) fn parts(code: &Code, condition: &Expr, compiler: &mut Compiler<'_>) 
     parts
 }
 
-/// `fn reward` as one part: every single fact that its body names.
-pub(super) fn function_parts(code: &Code, name: &Range<usize>) -> Vec<Part> {
-    let body = &code.plain[name.start..body_end(code, name.start)];
+/// `fn reward` as one part: what its body reads. The order of the tree is not that of the text, so it is sorted.
+pub(super) fn function_parts(code: &Code, ast: &AST, name: &Range<usize>, compiler: &mut Compiler<'_>) -> Vec<Part> {
+    let body = name.start..body_end(code, name.start);
+    let uses = compiler.needs.slot_uses.len();
+    let mut found = Vec::new();
+    ast.clone_functions_only().walk(&mut |path: &[ASTNode<'_>]| {
+        if let Some(ASTNode::Expr(expr)) = path.last() {
+            collect(code, expr, compiler, &mut found);
+        }
+        true
+    });
+    compiler.needs.slot_uses.truncate(uses);
+    found.retain(|(start, _)| body.contains(start));
+    found.sort_by_key(|(start, _)| *start);
+    let mut readings: Vec<Reading> = Vec::new();
+    for (_, reading) in found {
+        if !readings.iter().any(|known| known.name == reading.name) {
+            readings.push(reading);
+        }
+    }
+    // Under another name than 'facts' only whole names are found.
+    let text = &code.plain[body];
     let is_named = |fact: &&Fact| {
-        let after = |at: usize| body[at..].chars().next().is_none_or(|c| !c.is_alphanumeric() && c != '_');
-        body.match_indices(&fact.name()).any(|(at, found)| after(at + found.len()))
+        let after = |at: usize| text[at..].chars().next().is_none_or(|c| !c.is_alphanumeric() && c != '_');
+        text.match_indices(&fact.name()).any(|(at, found)| after(at + found.len()))
     };
-    let reading = |fact: &Fact| Reading {
-        name: fact.name(),
-        typed: match fact.get {
-            Getter::Number(get) => Typed::Number(Number::Fact(get, fact.reach)),
-            Getter::Whole(get) => Typed::Whole(Number::Whole(get)),
-            Getter::Flag(get) => Typed::Flag(Flag::Fact(get)),
-        },
-        unit: fact.unit,
-        look: look_of_fact(fact),
-    };
-    vec![Part { span: name.clone(), flag: None, readings: FACTS.iter().filter(is_named).map(reading).collect() }]
+    for fact in FACTS.iter().filter(is_named) {
+        if !readings.iter().any(|known| known.name == fact.name()) {
+            readings.push(Reading::of_fact(fact));
+        }
+    }
+    vec![Part { span: name.clone(), flag: None, readings }]
 }
 
 fn add(code: &Code, expr: &Expr, compiler: &mut Compiler<'_>, parts: &mut Vec<Part>) {
@@ -106,22 +120,29 @@ fn add(code: &Code, expr: &Expr, compiler: &mut Compiler<'_>, parts: &mut Vec<Pa
 }
 
 fn readings(code: &Code, expr: &Expr, compiler: &mut Compiler<'_>) -> Vec<Reading> {
-    let mut seen: Vec<Position> = Vec::new();
     let mut found = Vec::new();
     expr.walk(&mut Vec::new(), &mut |path: &[ASTNode<'_>]| {
-        let Some(ASTNode::Expr(expr)) = path.last() else { return true };
-        // The outermost of a chain comes first; its parts begin where it begins.
-        let Some(chain) = Chain::of(expr).filter(|chain| !seen.contains(&chain.position)) else { return true };
-        let typed = compiler.range(expr).map(Typed::Number).or_else(|| compiler.expression(expr));
-        if let (Some(typed), Some((unit, look))) = (typed, describe(&chain, compiler)) {
-            seen.push(chain.position);
-            let start = offset(&code.source, chain.position);
-            let name = code.source.text[start..chain_end(code, start)].to_owned();
-            found.push(Reading { name, typed, unit, look });
+        if let Some(ASTNode::Expr(expr)) = path.last() {
+            collect(code, expr, compiler, &mut found);
         }
         true
     });
-    found
+    found.into_iter().map(|(_, reading)| reading).collect()
+}
+
+/// Adds what an expression reads, with where it begins, if it is one fact.
+fn collect(code: &Code, expr: &Expr, compiler: &mut Compiler<'_>, found: &mut Vec<(usize, Reading)>) {
+    let Some(chain) = Chain::of(expr) else { return };
+    let start = offset(&code.source, chain.position);
+    // The outermost of a chain comes first; its parts begin where it begins.
+    if found.iter().any(|(known, _)| *known == start) {
+        return;
+    }
+    let typed = compiler.range(expr).map(Typed::Number).or_else(|| compiler.expression(expr));
+    if let (Some(typed), Some((unit, look))) = (typed, describe(&chain, compiler)) {
+        let name = code.source.text[start..chain_end(code, start)].trim_start_matches("facts.").to_owned();
+        found.push((start, Reading { name, typed, unit, look }));
+    }
 }
 
 /// The unit of a fact, and which beam to name with it.
@@ -179,6 +200,15 @@ pub(super) fn beam(parts: &[Part], inputs: Inputs<'_>) -> Option<usize> {
 }
 
 impl Reading {
+    fn of_fact(fact: &Fact) -> Self {
+        let typed = match fact.get {
+            Getter::Number(get) => Typed::Number(Number::Fact(get, fact.reach)),
+            Getter::Whole(get) => Typed::Whole(Number::Whole(get)),
+            Getter::Flag(get) => Typed::Flag(Flag::Fact(get)),
+        };
+        Self { name: fact.name(), typed, unit: fact.unit, look: look_of_fact(fact) }
+    }
+
     fn read(&self, inputs: Inputs<'_>) -> Option<FactRead> {
         let value = match &self.typed {
             Typed::Number(number) | Typed::Whole(number) => number.value(inputs),

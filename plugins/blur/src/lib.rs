@@ -7,12 +7,16 @@
 //!
 //! All arithmetic is on whole numbers and rounds once, to the nearest, half up.
 
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 
 use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, ParameterKind, Plugin};
 
 /// The filter, ready to be registered.
 pub const PLUGIN: Plugin = Plugin { descriptor: &DESCRIPTOR, create };
+
+// One library holds one filter, so the line is left out where several are linked together.
+#[cfg(filter_library)]
+filter_api::export!(PLUGIN);
 
 const DESCRIPTOR: Descriptor = Descriptor {
     name: "blur",
@@ -46,8 +50,9 @@ struct Blur {
 }
 
 fn create(values: &[f64]) -> Result<Box<dyn Filter>, FilterError> {
-    let [radius_px] = values else {
-        return Err(FilterError(format!("blur takes 1 parameter, not {}", values.len())));
+    let radius_px = match values {
+        [radius_px] => radius_px,
+        _ => return Err(FilterError(format!("blur takes 1 parameter, not {}", values.len()))),
     };
     if radius_px.fract() != 0.0 {
         return Err(FilterError(format!("'radius_px' of filter 'blur' must be a whole number, not {radius_px}")));

@@ -8,12 +8,16 @@
 //!
 //! All arithmetic is on whole numbers, so every machine marks the same pixels.
 
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 
 use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, ParameterKind, Plugin};
 
 /// The filter, ready to be registered.
 pub const PLUGIN: Plugin = Plugin { descriptor: &DESCRIPTOR, create };
+
+// One library holds one filter, so the line is left out where several are linked together.
+#[cfg(filter_library)]
+filter_api::export!(PLUGIN);
 
 const DESCRIPTOR: Descriptor = Descriptor {
     name: "colour",
@@ -74,8 +78,9 @@ struct Colour {
 }
 
 fn create(values: &[f64]) -> Result<Box<dyn Filter>, FilterError> {
-    let [hue_deg, width_deg, saturation, dark] = values else {
-        return Err(FilterError(format!("colour takes 4 parameters, not {}", values.len())));
+    let (hue_deg, width_deg, saturation, dark) = match values {
+        [hue_deg, width_deg, saturation, dark] => (hue_deg, width_deg, saturation, dark),
+        _ => return Err(FilterError(format!("colour takes 4 parameters, not {}", values.len()))),
     };
     let steps = |degrees: f64| (degrees * f64::from(CIRCLE) / 360.0).round() as i32;
     Ok(Box::new(Colour {

@@ -7,12 +7,16 @@
 //!
 //! All arithmetic is on whole numbers, so every machine marks the same pixels.
 
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 
 use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, ParameterKind, Plugin};
 
 /// The filter, ready to be registered.
 pub const PLUGIN: Plugin = Plugin { descriptor: &DESCRIPTOR, create };
+
+// One library holds one filter, so the line is left out where several are linked together.
+#[cfg(filter_library)]
+filter_api::export!(PLUGIN);
 
 /// The least deviation of a channel, grey levels.
 pub const LEAST_DEVIATION: u64 = 2;
@@ -63,8 +67,9 @@ struct Floor {
 }
 
 fn create(values: &[f64]) -> Result<Box<dyn Filter>, FilterError> {
-    let [height, width, tolerance] = values else {
-        return Err(FilterError(format!("floor takes 3 parameters, not {}", values.len())));
+    let (height, width, tolerance) = match values {
+        [height, width, tolerance] => (height, width, tolerance),
+        _ => return Err(FilterError(format!("floor takes 3 parameters, not {}", values.len()))),
     };
     Ok(Box::new(Floor { height: *height, width: *width, tolerance: (tolerance * 256.0).round() as u64 }))
 }

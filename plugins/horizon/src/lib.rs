@@ -4,12 +4,16 @@
 //! grows linearly from the line to the full width at the bottom, as a straight road does in perspective. A pixel is kept
 //! where its middle is inside.
 
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 
 use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, ParameterKind, Plugin};
 
 /// The filter, ready to be registered.
 pub const PLUGIN: Plugin = Plugin { descriptor: &DESCRIPTOR, create };
+
+// One library holds one filter, so the line is left out where several are linked together.
+#[cfg(filter_library)]
+filter_api::export!(PLUGIN);
 
 const DESCRIPTOR: Descriptor = Descriptor {
     name: "horizon",
@@ -46,8 +50,9 @@ struct Horizon {
 }
 
 fn create(values: &[f64]) -> Result<Box<dyn Filter>, FilterError> {
-    let [top, narrowing] = values else {
-        return Err(FilterError(format!("horizon takes 2 parameters, not {}", values.len())));
+    let (top, narrowing) = match values {
+        [top, narrowing] => (top, narrowing),
+        _ => return Err(FilterError(format!("horizon takes 2 parameters, not {}", values.len()))),
     };
     Ok(Box::new(Horizon { top: *top, narrowing: *narrowing }))
 }
@@ -58,12 +63,12 @@ impl Horizon {
         let line = self.top * height as f64;
         let middle = row as f64 + 0.5;
         if middle < line {
-            return width.div_ceil(2);
+            return width - width / 2;
         }
         let above_bottom = (height as f64 - middle) / (height as f64 - line);
         let side = self.narrowing * above_bottom * width as f64 * 0.5;
         // Pixel x is left of the border where x + 0.5 < side.
-        ((side - 0.5).ceil().max(0.0) as usize).min(width.div_ceil(2))
+        ((side - 0.5).ceil().max(0.0) as usize).min(width - width / 2)
     }
 }
 

@@ -6,7 +6,7 @@
 //!
 //! One clause of the contract the library does not keep: it allocates both gradients for each frame.
 
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 
 use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, ParameterKind, Plugin};
 use image::GrayImage;
@@ -14,6 +14,10 @@ use imageproc::gradients::{horizontal_scharr, vertical_scharr};
 
 /// The filter, ready to be registered.
 pub const PLUGIN: Plugin = Plugin { descriptor: &DESCRIPTOR, create };
+
+// One library holds one filter, so the line is left out where several are linked together.
+#[cfg(filter_library)]
+filter_api::export!(PLUGIN);
 
 const DESCRIPTOR: Descriptor = Descriptor {
     name: "scharr",

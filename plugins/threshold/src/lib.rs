@@ -2,12 +2,16 @@
 //!
 //! Luma of a colour pixel: `(77 R + 150 G + 29 B) / 256`, rounded down (ITU-R BT.601 weights in 8 bits).
 
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 
 use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, ParameterKind, Plugin};
 
 /// The filter, ready to be registered.
 pub const PLUGIN: Plugin = Plugin { descriptor: &DESCRIPTOR, create };
+
+// One library holds one filter, so the line is left out where several are linked together.
+#[cfg(filter_library)]
+filter_api::export!(PLUGIN);
 
 const DESCRIPTOR: Descriptor = Descriptor {
     name: "threshold",
@@ -45,8 +49,9 @@ struct Threshold {
 }
 
 fn create(values: &[f64]) -> Result<Box<dyn Filter>, FilterError> {
-    let [threshold, invert] = values else {
-        return Err(FilterError(format!("threshold takes 2 parameters, not {}", values.len())));
+    let (threshold, invert) = match values {
+        [threshold, invert] => (threshold, invert),
+        _ => return Err(FilterError(format!("threshold takes 2 parameters, not {}", values.len()))),
     };
     // Luma is a whole number, so comparing with the next whole number is exact.
     let least = threshold.ceil() as u8;

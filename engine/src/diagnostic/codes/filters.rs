@@ -1,4 +1,4 @@
-//! The pages about filters, their files and their sandbox.
+//! The pages about filters, their files and their sandbox, and about photographs.
 
 /// Each code with its page, in the order of the alphabet.
 pub(super) const PAGES: &[(&str, &str)] = &[
@@ -38,6 +38,21 @@ pub(super) const PAGES: &[(&str, &str)] = &[
         "E-FILTER-TWICE",
         "Two filters have the same name, so a script could mean either of them.\n\
          Remove one of the files, or give one filter another name, in its descriptor and as the name of its file.",
+    ),
+    (
+        "E-IMAGE-FILE",
+        "A photograph, or a folder of them, is missing or cannot be read.\n\
+         Give PNG or JPEG files, or a folder that holds them directly; folders within it are not searched.",
+    ),
+    (
+        "E-IMAGE-FORMAT",
+        "A file is called an image but is neither PNG nor JPEG inside.\n\
+         Its name does not matter, its content does. Save the photograph as PNG or JPEG.",
+    ),
+    (
+        "E-IMAGE-LIMIT",
+        "An image has more bytes or more pixels than are read: 64 MiB and 50 megapixels.\n\
+         A small file can unpack into a huge picture, so the limit is checked first. Make the image smaller.",
     ),
     (
         "E-NATIVE-ABI",

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use filter_api::abi::{ABI_VERSION, MESSAGE_BYTES, OK};
-use filter_api::{Format, Frame, FrameMut};
+use filter_api::{Descriptor, Format, Frame, FrameMut};
 use wasmtime::{
     Caller, Config, Engine, Extern, ExternType, Instance, Linker, Memory, Module, OperatorCost, Store, StoreLimits,
     StoreLimitsBuilder, Trap, TypedFunc,
@@ -18,7 +18,7 @@ use super::limits::damaged;
 use crate::diagnostic::{Diagnostic, Kind, Result, printable};
 use crate::filter::catalogue::{Entry, Form};
 use crate::filter::described::Described;
-use crate::filter::running::{Running, failed, refused};
+use crate::filter::running::{Running, check_frames, failed, refused};
 use crate::filter::trust::sha256;
 
 const MEMORY_BYTES: usize = 64 << 20;
@@ -43,8 +43,8 @@ pub(super) fn open(path: &Path, bytes: &[u8]) -> Result<Entry> {
     check_imports(&shown, &module)?;
     let sandbox = Arc::new(Sandbox { shown, engine, module });
     let descriptor = sandbox.describe()?.check("E-WASM-ABI", path)?;
-    let name = descriptor.name;
-    let create = move |values: &[f64]| -> Result<Box<dyn Running>> { Ok(Box::new(sandbox.create(name, values)?)) };
+    let create =
+        move |values: &[f64]| -> Result<Box<dyn Running>> { Ok(Box::new(sandbox.create(descriptor, values)?)) };
     let (path, sha256) = (Some(path.to_owned()), Some(sha256(bytes)));
     Ok(Entry { descriptor, form: Form::Wasm, path, sha256, create: Box::new(create) })
 }
@@ -156,7 +156,7 @@ impl Sandbox {
         })
     }
 
-    fn create(&self, name: &'static str, values: &[f64]) -> Result<Sandboxed> {
+    fn create(&self, descriptor: &'static Descriptor, values: &[f64]) -> Result<Sandboxed> {
         let mut guest = self.start()?;
         let functions = self.functions(&mut guest)?;
         let values_bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
@@ -174,7 +174,7 @@ impl Sandbox {
             return Err(refused(&guest.words(message)));
         }
         let instance = guest.number(place)?;
-        Ok(Sandboxed { name, guest, functions, instance, frames, message, pixels: [(0, 0); 2] })
+        Ok(Sandboxed { descriptor, guest, functions, instance, frames, message, pixels: [(0, 0); 2] })
     }
 }
 
@@ -186,7 +186,7 @@ struct Functions {
 
 /// An instance of a sandboxed filter, with the addresses of what it shares with the host.
 struct Sandboxed {
-    name: &'static str,
+    descriptor: &'static Descriptor,
     guest: Guest,
     functions: Functions,
     instance: u32,
@@ -198,6 +198,7 @@ struct Sandboxed {
 
 impl Running for Sandboxed {
     fn process(&mut self, input: Frame<'_>, mut output: FrameMut<'_>) -> Result<()> {
+        check_frames(self.descriptor, &input, &output)?;
         let guest = &mut self.guest;
         let (width, height, writes) = (input.width_px() as u32, input.height_px() as u32, output.format());
         let to = output.pixels();
@@ -211,13 +212,15 @@ impl Running for Sandboxed {
         };
         let [(from_address, _), (to_address, _)] = self.pixels;
         guest.write(from_address, input.pixels())?;
+        // What the filter leaves out is what stood there, as in every form; a module must not keep frames by it.
+        guest.write(to_address, to)?;
         guest.write(self.frames, frame(input.format(), from_address).as_flattened())?;
         guest.write(self.frames + FRAME_BYTES, frame(writes, to_address).as_flattened())?;
         guest.write(self.message, &[0])?;
         let fuel = FRAME_FUEL + PIXEL_FUEL * u64::from(width) * u64::from(height);
         let arguments = (self.instance, self.frames, self.frames + FRAME_BYTES, self.message);
         if guest.call(&self.functions.process, arguments, fuel, "filtering a frame")? != OK {
-            return Err(failed("E-FILTER", self.name, &guest.words(self.message)));
+            return Err(failed("E-FILTER", self.descriptor.name, &guest.words(self.message)));
         }
         to.copy_from_slice(guest.read(to_address, to.len())?);
         Ok(())

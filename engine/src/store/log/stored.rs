@@ -25,7 +25,8 @@ pub struct RecordedRun {
 }
 
 impl RecordedRun {
-    /// Reads `run.toml`, `policy.toml`, `log.bin` and `summary.json` of the folder of one seed.
+    /// Reads `run.toml`, `policy.toml`, `log.bin` and `summary.json` of the folder of one seed,
+    /// which may use these filters.
     ///
     /// # Errors
     /// If one is missing or damaged, or the four do not belong together.

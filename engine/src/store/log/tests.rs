@@ -9,6 +9,7 @@ use sha2::{Digest, Sha256};
 use super::{DIGEST_BYTES, PREFIX_BYTES, RunLog, read_log};
 use crate::diagnostic::{Kind, Result, SourceText};
 use crate::experiment::{Ledger, Plan, learn_into, test_into};
+use crate::filter::Catalogue;
 use crate::reward::Behaviour;
 use crate::world::Layout;
 
@@ -32,9 +33,7 @@ static SAMPLE: LazyLock<Sample> = LazyLock::new(|| {
     let layout = Arc::new(Layout::parse(SourceText::new("log.toml", WORLD)).unwrap());
     let mut settings = behaviour.settings().clone();
     (settings.run.steps, settings.run.test_steps) = (1200, 40);
-    let plan =
-        Plan::with_layout(Arc::new(behaviour), settings, layout, Arc::new(crate::filter::Catalogue::linked_in()))
-            .unwrap();
+    let plan = Plan::with_layout(Arc::new(behaviour), settings, layout, Arc::new(Catalogue::linked_in())).unwrap();
     let (mut learning, mut test) = (Ledger::new(&plan, 1200), Ledger::new(&plan, 40));
     let stop = AtomicBool::new(false);
     let learned = learn_into(&plan, SEED, &stop, &|_| (), &mut learning).unwrap();
@@ -72,6 +71,15 @@ fn with_header(change: impl Fn(String) -> String) -> Vec<u8> {
 fn a_log_comes_back_as_it_was_written() {
     assert_eq!(read(&SAMPLE.file).unwrap(), SAMPLE.log);
     assert_eq!(SAMPLE.log.learning.shape().bytes(), 88);
+}
+
+#[test]
+fn a_log_that_holds_only_the_beginning_of_a_run_knows_how_long_the_run_was() {
+    let (shape, bytes) = (SAMPLE.log.learning.shape().clone(), SAMPLE.log.learning.bytes().to_vec());
+    let learning = Ledger::from_bytes(shape, bytes, 9_000_000).unwrap();
+    let file = RunLog { learning, test: SAMPLE.log.test.clone() }.to_bytes(&SAMPLE.plan, SEED, RUN).unwrap();
+    let read = read(&file).unwrap().learning;
+    assert_eq!((read.len(), read.steps()), (1200, 9_000_000));
 }
 
 #[test]
