@@ -79,3 +79,14 @@ fn any_moment_of_any_seed_can_be_seen() {
     }
     assert_eq!(super::served::status(&ask("/frame?save=1&seed=2&phase=test&step=-1")), 400);
 }
+
+#[test]
+fn a_newer_save_ends_the_older_run() {
+    let served = Served::new(&[]);
+    let mut socket = served.socket();
+    message(&mut socket, |said| said["kind"] == "run" && said["done"] == true);
+    served.bench.write("short.rhai", SCRIPT.replace("steps: 800", "steps: 100000000"));
+    message(&mut socket, |said| said["text"].as_str().unwrap().contains("100000000 steps"));
+    served.bench.write("short.rhai", SCRIPT);
+    assert_eq!(message(&mut socket, |said| said["kind"] == "run")["save"], 3);
+}

@@ -9,9 +9,9 @@ use super::{FilterSources, count, seed};
 #[derive(Debug, Args)]
 #[command(
     after_help = "The page is served on this computer only, at an address with a secret; nobody else can open it. \
-                        End with Ctrl-C.\n\
-                        Exit status: 0 ended with Ctrl-C; 2 usage; 4 no free port; 6 files and disk. A script that is \
-                        wrong ends nothing: the page shows the error until the next save."
+                        A script that is saved with a mistake ends nothing: the page shows the error until the next save.\n\
+                        Exit status: 0 ended with Ctrl-C; 2 usage; 3 bad script to begin with; 4 no free port; \
+                        5 refused for trust; 6 files and disk."
 )]
 // Without the feature nothing reads them.
 #[cfg_attr(not(feature = "serve"), allow(dead_code))]

@@ -8,6 +8,9 @@ use crate::diagnostic::Result;
 use crate::experiment::{Ledger, Phase, Plan, Tally, TestFigures, learned_at};
 use crate::learner::Policy;
 
+/// The most states of a seed in a document.
+const MOST_STATES: usize = 256;
+
 /// What is known of a seed.
 #[derive(Debug, Clone, Copy)]
 pub struct SeedData<'a> {
@@ -36,11 +39,13 @@ pub struct SeedView {
     pub learned_at: Option<u64>,
     /// Reinforcement of each window.
     pub curve: Vec<f64>,
-    /// By window, what each rule added.
+    /// By window, what each rule added; nothing of a seed without steps.
     pub by_rule: Vec<Vec<f64>>,
     /// The test's figures.
     pub test: Option<TestFigures>,
-    /// The states that were met.
+    /// How many states were met.
+    pub states_met: usize,
+    /// The states that were met, by number; of very many, the most visited.
     pub states: Vec<StateRow>,
     /// Steps of learning; null if this document leaves them out.
     pub learning: Option<Track>,
@@ -59,7 +64,9 @@ pub struct StateRow {
     pub visits: u64,
     /// The best action.
     pub best: usize,
-    /// The value of each action.
+    /// Its value.
+    pub value: f64,
+    /// The value of each action; nothing of a seed without steps.
     pub values: Vec<f64>,
 }
 
@@ -70,7 +77,8 @@ impl SeedView {
     /// If the grid cannot be made.
     pub fn new(plan: &Plan, data: &SeedData<'_>) -> Result<Self> {
         let curve = data.tally.map_or_else(Vec::new, Tally::curve);
-        let windows = 0..curve.len();
+        let brings_steps = !data.learning.is_empty();
+        let windows = 0..if brings_steps { curve.len() } else { 0 };
         Ok(Self {
             seed: data.seed,
             shown_first: false,
@@ -78,7 +86,8 @@ impl SeedView {
             by_rule: data.tally.map_or_else(Vec::new, |tally| windows.map(|at| tally.by_rule(at).to_vec()).collect()),
             curve,
             test: data.test.cloned(),
-            states: data.policy.map_or(Ok(Vec::new()), |policy| states(plan, policy))?,
+            states_met: data.policy.map_or(0, |policy| policy.rows().iter().flatten().count()),
+            states: data.policy.map_or(Ok(Vec::new()), |policy| states(plan, policy, brings_steps))?,
             learning: None,
             tested: None,
         })
@@ -122,13 +131,19 @@ impl SeedView {
     }
 }
 
-fn states(plan: &Plan, policy: &Policy) -> Result<Vec<StateRow>> {
+fn states(plan: &Plan, policy: &Policy, with_values: bool) -> Result<Vec<StateRow>> {
     let grid = plan.grid()?;
-    let rows = policy.rows().iter().enumerate().filter_map(|(state, row)| {
-        let (row, (best, _)) = (row.as_ref()?, policy.best(state)?);
+    let mut met: Vec<(usize, u64)> =
+        policy.rows().iter().enumerate().filter_map(|(state, row)| Some((state, row.as_ref()?.visits))).collect();
+    met.sort_by_key(|(state, visits)| (std::cmp::Reverse(*visits), *state));
+    met.truncate(MOST_STATES);
+    met.sort_unstable();
+    let rounded = |value: f64| (value * 1e4).round() / 1e4;
+    let rows = met.into_iter().filter_map(|(state, visits)| {
+        let (row, (best, value)) = (policy.rows().get(state)?.as_ref()?, policy.best(state)?);
         let cells = grid.cells(state).iter().map(|filled| if *filled { '1' } else { '0' }).collect();
-        let values = row.values.iter().map(|value| (value * 1e4).round() / 1e4).collect();
-        Some(StateRow { state, cells, visits: row.visits, best, values })
+        let values = if with_values { row.values.iter().copied().map(rounded).collect() } else { Vec::new() };
+        Some(StateRow { state, cells, visits, best, value: rounded(value), values })
     });
     Ok(rows.collect())
 }

@@ -14,9 +14,9 @@ use crate::page::{Document, SeedData, SeedView};
 #[derive(Debug)]
 pub struct SeedRun {
     /// What it learned.
-    pub learned: Learned,
+    pub learned: Arc<Learned>,
     /// Steps of learning.
-    pub learning: Ledger,
+    pub learning: Arc<Ledger>,
     /// The test's figures, once it is done.
     pub test: Option<TestFigures>,
     /// Steps of the test.

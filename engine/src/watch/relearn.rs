@@ -9,13 +9,15 @@ use std::time::{Duration, Instant};
 use super::board::{Board, SavedRun, SeedRun};
 use super::files::Files;
 use crate::diagnostic::{Diagnostic, Kind, Result};
-use crate::experiment::{Ledger, Overrides, Plan, in_parallel, learn_into, test_into};
+use crate::experiment::{Ledger, Overrides, Plan, RecordShape, in_parallel, learn_into, test_into};
 use crate::filter::Catalogue;
 use crate::page::{Document, Moments};
 use crate::reward::Behaviour;
 
 /// A save is often several writes; so long it must be quiet.
 const QUIET: Duration = Duration::from_millis(15);
+/// Room for the steps of all seeds, bytes; of longer runs the beginnings are kept.
+const MOST_LEDGER_BYTES: usize = 512 << 20;
 /// How often the end of the program is looked for.
 const GLANCE: Duration = Duration::from_millis(100);
 
@@ -126,10 +128,11 @@ impl Relearner {
         files.lock().unwrap_or_else(PoisonError::into_inner).watch([world])?;
         let seeds = if count == 1 { "one seed".to_owned() } else { format!("{count} seeds") };
         self.board.working(&format!("learning {seeds}, {} steps each", plan.settings.run.steps));
+        let room = (MOST_LEDGER_BYTES / (2 * count * RecordShape::of(&plan).bytes())) as u64;
         let learned = in_parallel(&self.settings.seeds, self.settings.threads, |seed| {
-            let mut learning = Ledger::new(&plan, plan.settings.run.steps);
+            let mut learning = Ledger::new(&plan, plan.settings.run.steps.min(room));
             let learned = learn_into(&plan, seed, stop, &|_| (), &mut learning)?.whole()?;
-            Ok(SeedRun { learned, learning, test: None, tested: Ledger::off() })
+            Ok(SeedRun { learned: Arc::new(learned), learning: Arc::new(learning), test: None, tested: Ledger::off() })
         })?;
         if stop.load(Ordering::Relaxed) {
             return Ok(());
@@ -139,7 +142,7 @@ impl Relearner {
         let run = self.show(plan, learned, false, &text)?;
         let tested = in_parallel(&(0..count as u64).collect::<Vec<_>>(), self.settings.threads, |index| {
             let seed = &run.seeds[index as usize].learned;
-            let mut tested = Ledger::new(&run.plan, run.plan.settings.run.test_steps);
+            let mut tested = Ledger::new(&run.plan, run.plan.settings.run.test_steps.min(room));
             let test = test_into(&run.plan, &seed.policy, seed.seed, stop, &mut tested)?;
             Ok((test.figures, tested))
         })?;
@@ -147,8 +150,8 @@ impl Relearner {
             return Ok(());
         }
         let seeds_done = run.seeds.iter().zip(tested).map(|(seed, (test, tested))| SeedRun {
-            learned: seed.learned.clone(),
-            learning: seed.learning.clone(),
+            learned: Arc::clone(&seed.learned),
+            learning: Arc::clone(&seed.learning),
             test: Some(test),
             tested,
         });

@@ -209,7 +209,7 @@ async fn frame(State(shared): State<Shared>, Query(question): Query<FrameQuestio
 fn shot(run: &SavedRun, question: &FrameQuestion) -> Option<Result<Shot>> {
     let seed = run.seeds.iter().find(|one| one.learned.seed == question.seed)?;
     let (phase, ledger) = match question.phase.as_str() {
-        "learning" => (Phase::Learning, &seed.learning),
+        "learning" => (Phase::Learning, &*seed.learning),
         "test" => (Phase::Test, &seed.tested),
         _ => return None,
     };

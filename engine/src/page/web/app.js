@@ -6,7 +6,7 @@ const app = {
   doc: null, before: null, save: 0, seed: 0, phase: 'learning', step: 0, share: 1, speed: 3, playing: false,
   litRule: null, live: null, shot: null, tracks: new Map(), picked: false,
 };
-const stale = { base: true, moment: true, motion: true };
+const stale = { base: true, moment: true, motion: true, lit: true };
 const map = new WorldMap($('map'));
 const curve = new Curve($('curve'), $('curve-note'), pickWindow);
 const timeline = new Timeline($('timeline'), (step) => { pause(); go(step); });
@@ -30,6 +30,7 @@ function showDocument(doc, before) {
   Object.assign(app, { doc, before, shot: null });
   app.tracks.clear();
   app.litRule = null;
+  chooseRuleInks(doc.rules);
   document.querySelector('main').hidden = false;
   $('title').textContent = `${doc.behaviour} in ${doc.world.name}`;
   document.title = `${doc.behaviour} in ${doc.world.name}`;
@@ -113,7 +114,8 @@ function toggle() {
 
 function light(rule) {
   app.litRule = rule;
-  Object.assign(stale, { base: true, moment: true });
+  stale.base = true;
+  stale.lit = true;
 }
 
 /** Goes to the worst step of a window. */
@@ -157,9 +159,8 @@ function drawMoment(steps, index) {
   }
   showStep(doc, steps, index, app.step);
   if (!app.playing || steps.reward[index] !== 0) showReasons(doc, steps, index, exact?.reasons);
-  script.light(app.litRule, (rule) => marked(doc, rule) && steps.fired(index, rule) === 1);
   states.mark(steps.nextState[index]);
-  if (drawMoment.window !== window_ || !app.playing) showCauses(doc, seedView(), steps, app.phase, window_, (step) => { pause(); go(step); });
+  if (drawMoment.window !== window_ || !app.playing) showCauses(doc, seedView(), steps, app.phase, window_, (step) => { pause(); go(step); }, light);
   if (drawMoment.window !== window_ || drawMoment.phase !== app.phase) curve.stale = true;
   Object.assign(drawMoment, { window: window_, phase: app.phase });
   $('moment').replaceChildren('step ', el('b', { text: whole(app.step) }), ` of ${whole(steps.steps)} · `,
@@ -192,13 +193,14 @@ function drawFrame(now) {
     curve.stale = true;
   }
   const index = steps ? steps.index(app.step) : -1;
-  if (index >= 0 && (stale.moment || stale.base)) drawMoment(steps, index);
+  if (index >= 0 && stale.moment) drawMoment(steps, index);
+  if (index >= 0 && (stale.moment || stale.lit)) script.light(app.litRule, (rule) => marked(app.doc, rule) && steps.fired(index, rule) === 1);
   if (stale.motion || stale.base) {
     map.drawOver(app.doc, steps, app.step, app.share);
     timeline.drawOver(app.step + app.share - 1);
   }
   if (curve.stale) curve.drawOver(app.phase === 'learning' ? Math.floor(app.step / app.doc.window_steps) : null);
-  Object.assign(stale, { base: false, moment: false, motion: false });
+  Object.assign(stale, { base: false, moment: false, motion: false, lit: false });
 }
 
 function setSpeed(number) {

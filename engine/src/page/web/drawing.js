@@ -9,7 +9,15 @@ function readInk() {
   }
   ink.rules = [0, 1, 2, 3, 4, 5].map((rule) => style.getPropertyValue(`--rule-${rule}`).trim());
 }
-const ruleInk = (rule) => ink.rules[rule % ink.rules.length];
+
+/** Greens for rules that reward, the other colours for those that punish. */
+let ruleInks = [];
+function chooseRuleInks(rules) {
+  const [good, bad] = [[3, 5], [0, 1, 2, 4]];
+  let [goods, bads] = [0, 0];
+  ruleInks = rules.map((rule) => (rule.value > 0 ? good[goods++ % good.length] : bad[bads++ % bad.length]));
+}
+const ruleInk = (rule) => ink.rules[ruleInks[rule]];
 
 /** A canvas in pixels of the screen; false while it has no size. */
 function fit(canvas) {
@@ -23,6 +31,8 @@ function fit(canvas) {
     [canvas.style.width, canvas.style.height] = [`${columns / ratio}px`, `${rows / ratio}px`];
   }
   const pen = canvas.getContext('2d');
+  pen.restore();
+  pen.save();
   pen.setTransform(ratio, 0, 0, ratio, 0, 0);
   pen.clearRect(0, 0, width, height);
   pen.font = '11px system-ui, "DejaVu Sans", sans-serif';

@@ -27,7 +27,7 @@ class Frames {
     shot.stages.forEach((stage, index) => { this.parts.images[index].src = stage.picture; });
     shot.shares.forEach((share, cell) => {
       const box = this.parts.cells[cell];
-      box.textContent = this.parts.cells.length <= 15 ? `${(100 * share).toFixed(1)} %` : '';
+      box.textContent = doc.grid[1] <= 3 ? `${(100 * share).toFixed(1)} %` : doc.grid[1] <= 6 ? (100 * share).toFixed(0) : '';
       box.className = shot.occupied[cell] ? 'occupied' : shot.filled[cell] ? 'filled' : '';
     });
     this.parts.state.textContent = `state ${shot.state}`;

@@ -20,12 +20,12 @@ class WorldMap {
     const [spanX, spanY] = [(x1 - x0) * scale, (y1 - y0) * scale];
     const fromX = left + (width - left - right - spanX) / 2;
     const fromY = above + (height - above - below - spanY) / 2;
-    this.view = { scale, x: (m) => fromX + (m - x0) * scale, y: (m) => fromY + (y1 - m) * scale };
+    this.view = { floor: [fromX - 1, fromY - 1, spanX + 2, spanY + 2], scale, x: (m) => fromX + (m - x0) * scale, y: (m) => fromY + (y1 - m) * scale };
     pen.fillStyle = ink.floor;
     pen.fillRect(fromX, fromY, spanX, spanY);
     pen.save();
     pen.beginPath();
-    pen.rect(fromX - 1, fromY - 1, spanX + 2, spanY + 2);
+    pen.rect(...this.view.floor);
     pen.clip();
     for (const solid of doc.world.solids) this.solid(pen, solid);
     if (doc.world.route_m) {
@@ -34,9 +34,9 @@ class WorldMap {
     }
     if (track) this.marks(pen, doc, track, litRule);
     pen.restore();
-    for (const at of ticks(x0, x1, spanX / 70)) label(pen, short(at), this.view.x(at), fromY + spanY + 14, 'center');
+    for (const at of ticks(x0, x1, spanX / 70)) if (this.view.x(at) < fromX + spanX - 2) label(pen, short(at), this.view.x(at), fromY + spanY + 14, 'center');
     for (const at of ticks(y0, y1, spanY / 60)) label(pen, short(at), fromX - 6, this.view.y(at), 'right', 'middle');
-    label(pen, 'm', fromX + spanX + 3, fromY + spanY + 14);
+    label(pen, 'm', fromX + spanX + 5, fromY + spanY + 14);
   }
 
   outline(pen, solid) {
@@ -94,6 +94,9 @@ class WorldMap {
     const index = track.index(step);
     if (index < 0) return;
     const pose = between(track, index, share, doc.unit_m);
+    pen.beginPath();
+    pen.rect(...this.view.floor);
+    pen.clip();
     this.trail(pen, doc, track, index, pose);
     if (doc.world.prey && track.preyX.length) this.prey(pen, doc, track, index, share);
     this.fan(pen, doc, track, index, pose);

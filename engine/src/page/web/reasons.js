@@ -51,7 +51,7 @@ function showReasons(doc, track, index, reasons) {
 }
 
 /** The causes of one window of the curve: which rules, through which beams, when first. */
-function showCauses(doc, seed, track, phase, window_, jump) {
+function showCauses(doc, seed, track, phase, window_, jump, light_) {
   const [from, to] = [window_ * doc.window_steps, (window_ + 1) * doc.window_steps];
   const causes = doc.rules.map((rule, at) => ({ rule, at, count: 0, total: 0, first: null, beams: new Map() }));
   let sum = 0;
@@ -79,7 +79,8 @@ function showCauses(doc, seed, track, phase, window_, jump) {
   $('causes').replaceChildren(el('ul', {}, ...spoke.map((cause) => {
     const beams = [...cause.beams].sort((a, b) => b[1] - a[1]).slice(0, 3)
       .map(([beam, count]) => `${beamWords(beam, doc.scan.beams)}${count > 1 ? ` (${count} ×)` : ''}`).join('; ');
-    return el('li', {}, chip(cause.at), el('b', { text: cause.rule.name }),
+    return el('li', { onpointerenter: () => light_(cause.at), onpointerleave: () => light_(null) },
+      chip(cause.at), el('b', { text: cause.rule.name }),
       ` ${whole(cause.count)} ×, ${signed(cause.total)}, first at `,
       el('button', { type: 'button', class: 'link', text: `step ${whole(cause.first)}`, onclick: () => jump(cause.first) }),
       ...(beams ? [el('div', { class: 'fact', text: beams })] : []));

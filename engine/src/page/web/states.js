@@ -47,20 +47,22 @@ class States {
       const differs = Boolean(last) && last.best !== row.best;
       changed += differs;
       const action = doc.actions[row.best];
-      const title = `state ${row.state}: ${motion(action)}, value ${short(row.values[row.best])}, met ${whole(row.visits)} times`
-        + (differs ? `; before: ${motion(doc.actions[last.best])}` : '');
+      const next = [...row.values.keys()].filter((at) => at !== row.best).sort((a, b) => row.values[b] - row.values[a]).slice(0, 2)
+        .map((at) => `\nnext best: ${motion(doc.actions[at])}, value ${short(row.values[at])}`).join('');
+      const title = `state ${row.state}: ${motion(action)}, value ${short(row.value)}, met ${whole(row.visits)} times${next}`
+        + (differs ? `\nbefore the save: ${motion(doc.actions[last.best])}` : '');
       const button = el('button', {
         type: 'button', title, class: `state${differs ? ' changed' : ''}${row.visits < 10 ? ' rare' : ''}`,
         onclick: () => this.onPick(row.state),
       }, stateIcon(doc, row, last),
       el('span', { class: 'number', text: `no. ${row.state}` }),
-      el('span', { text: row.values[row.best].toFixed(2).replace('-', '−') }),
+      el('span', { text: row.value.toFixed(2).replace('-', '−') }),
       el('span', { text: `${whole(row.visits)} ×` }));
       this.buttons.set(row.state, button);
       return button;
     }));
-    const met = `${seed.states.length} met`
-      + (rows.length < seed.states.length ? `, the ${rows.length} most met are shown` : '');
+    const met = `${whole(seed.states_met)} met`
+      + (rows.length < seed.states_met ? `, the ${rows.length} most met are shown` : '');
     const diff = before ? `; ${changed} change${changed === 1 ? 's' : ''} the best action since the last save (dashed: before)` : '';
     this.note.textContent = seed.states.length
       ? `${met}: number and value of the best action, which the arrow shows; how often met${diff}` : 'nothing was learned';
