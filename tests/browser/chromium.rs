@@ -141,6 +141,7 @@ impl Chromium {
     }
 
     /// Chooses an entry of a list.
+    #[cfg(feature = "serve")]
     pub(super) fn choose(&mut self, id: &str, entry: &str) {
         self.value(&format!(
             "(() => {{ const list = document.getElementById('{id}'); list.value = '{entry}'; \

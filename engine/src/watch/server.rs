@@ -33,9 +33,11 @@ const PORTS: u16 = 20;
 /// How long an answer may take to be read.
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(30);
 /// Who was refused has to wait: a flood of requests cannot take the processor from learning.
-const REFUSED_WAIT: Duration = Duration::from_millis(20);
+const REFUSED_WAIT: Duration = Duration::from_millis(100);
+/// The same for who comes while all places are taken.
+const TURNED_AWAY_WAIT: Duration = Duration::from_millis(5);
 
-/// A place on one seed's recorded way, for a permit to travel with its connection.
+/// A place among the connections, which travels with its connection.
 pub(super) type Permit = Arc<OwnedSemaphorePermit>;
 
 /// Where the page is.
@@ -107,7 +109,7 @@ async fn accept(listener: TcpListener, router: Router) {
                 // What the kernel takes at once is enough; nobody waits for this client.
                 let answer = raw((StatusCode::SERVICE_UNAVAILABLE, "too many connections"));
                 let _ = stream.try_write(answer.as_bytes());
-                tokio::time::sleep(Duration::from_millis(1)).await;
+                tokio::time::sleep(TURNED_AWAY_WAIT).await;
             }
         }
     }
@@ -118,12 +120,13 @@ async fn connection(mut stream: TcpStream, router: Router, permit: Permit) {
     let head = match read_head(&mut stream).await {
         Ok(head) => head,
         Err(refusal) => {
+            tokio::time::sleep(REFUSED_WAIT).await;
             let _ = tokio::time::timeout(ANSWER_TIMEOUT, stream.write_all(raw(refusal).as_bytes())).await;
             let _ = stream.shutdown().await;
             // The rest of what the client sent is read, or the system would throw our answer away with it.
             let mut rest = [0; 4096];
             let drain = async { while stream.read(&mut rest).await.is_ok_and(|count| count > 0) {} };
-            let _ = tokio::time::timeout(REFUSED_WAIT * 5, drain).await;
+            let _ = tokio::time::timeout(REFUSED_WAIT, drain).await;
             return;
         }
     };
