@@ -31,6 +31,11 @@ material = "light"
 [[start]]
 position_m = [3.0, 1.0]
 yaw_deg = 0
+
+[[route]]
+name = "lap"
+points_m = [[1, 1], [5, 1], [5, 5], [1, 5]]
+closed = true
 "#;
 
 fn plan() -> Plan {
@@ -62,6 +67,7 @@ fn the_world_is_drawn_to_its_bounds_in_millimetre_places() {
     let document = Document::without_seeds(&plan()).unwrap();
     assert_eq!(document.world.bounds_m, [-0.05, -0.05, 6.05, 6.05]);
     assert_eq!(document.unit_m, 0.001);
+    assert_eq!(document.world.route_m.unwrap(), [[1.0, 1.0], [5.0, 1.0], [5.0, 5.0], [1.0, 5.0], [1.0, 1.0]]);
     assert!(document.world.solids.iter().all(|solid| solid.kind == "wall" && solid.corners_m.len() == 4));
 }
 
