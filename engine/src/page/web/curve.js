@@ -51,7 +51,7 @@ class Curve {
     pen.save();
     pen.translate(9, (above + height - below) / 2);
     pen.rotate(-Math.PI / 2);
-    label(pen, `reinforcement per ${doc.window_steps} steps`, 0, 0, 'center', 'middle');
+    label(pen, `reward per ${doc.window_steps} steps`, 0, 0, 'center', 'middle');
     pen.restore();
     if (all.length > 1) this.band(pen, all);
     if (old.length) this.middle(pen, old, ink.before, [4, 3], 1.5);
@@ -93,8 +93,8 @@ class Curve {
   /** What each line means; in words beside the heading, where no line can run through them. */
   legend(seed, seeds, old) {
     const entries = [[`seed ${seed.seed}`, 'seed']];
-    if (seeds > 1) entries.push([`median of ${seeds} seeds, band 10 to 90 %`, 'median']);
-    if (old) entries.push(['save before, median', 'before']);
+    if (seeds > 1) entries.push([`median of ${seeds}, band 10–90 %`, 'median']);
+    if (old) entries.push(['median before the save', 'before']);
     this.note.replaceChildren(...entries.map(([words, kind]) => el('span', { class: `sign ${kind}` }, el('i'), words)));
   }
 
