@@ -2,7 +2,7 @@ use std::fmt::Write;
 use std::mem::offset_of;
 
 use filter_api::abi::{
-    ABI_VERSION, ERROR, MESSAGE_BYTES, OK, PANIC, PLUGIN_SYMBOL, RawFrame, RawParameter, RawPlugin, RawText,
+    ABI_VERSION, BRIGHTNESS, ERROR, MESSAGE_BYTES, OK, PANIC, PLUGIN_SYMBOL, RawFrame, RawParameter, RawPlugin, RawText,
 };
 use filter_api::{Format, ParameterKind};
 
@@ -24,6 +24,7 @@ impl Claims {
             ("FILTER_RGB", Format::Rgb.bit() as usize),
             ("FILTER_GREY", Format::Grey.bit() as usize),
             ("FILTER_MASK", Format::Mask.bit() as usize),
+            ("FILTER_BRIGHTNESS", BRIGHTNESS as usize),
             ("FILTER_NUMBER", ParameterKind::Number as usize),
             ("FILTER_WHOLE", ParameterKind::Whole as usize),
             ("FILTER_SWITCH", ParameterKind::Switch as usize),

@@ -1,4 +1,11 @@
-use crate::support::Bench;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use dispatch::Processor;
+use engine::experiment::{Overrides, Plan, learn};
+use engine::reward::Behaviour;
+
+use crate::support::{Bench, root};
 
 fn hash(text: &str) -> String {
     let summary: serde_json::Value = serde_json::from_str(text).unwrap();
@@ -41,6 +48,29 @@ fn one_thread_and_two_learn_the_same() {
     let one = hashes("1");
     assert_eq!(one.len(), 4);
     assert_eq!(one, hashes("2"));
+}
+
+#[test]
+fn every_compilation_of_the_vector_code_learns_the_same_behaviours() {
+    let scripts = ["wall", "wall-left", "corridor", "platform", "object", "line", "avoid", "dock"];
+    let learned = |processor: Processor, script: &str, set: &[&str]| {
+        Processor::limit_best(processor);
+        let behaviour = Behaviour::load(&root().join(format!("scripts/{script}.rhai"))).unwrap();
+        let set = set.iter().map(|pair| (*pair).to_owned()).collect();
+        let overrides = Overrides { steps: Some(400), set, ..Overrides::default() };
+        let plan = Plan::new(Arc::new(behaviour), &overrides).unwrap();
+        learn(&plan, 1, &AtomicBool::new(false), &|_| ()).unwrap().state_hash
+    };
+    for processor in Processor::all() {
+        for script in scripts {
+            let portable = learned(Processor::PORTABLE, script, &[]);
+            assert_eq!(learned(processor, script, &[]), portable, "{script}, {}", processor.name());
+        }
+        for set in [&["camera.lens=fisheye"][..], &["camera.noise=0"], &["camera.width_px=97", "camera.noise=60"]] {
+            let portable = learned(Processor::PORTABLE, "wall", set);
+            assert_eq!(learned(processor, "wall", set), portable, "{set:?}, {}", processor.name());
+        }
+    }
 }
 
 #[test]

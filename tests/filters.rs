@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use engine::filter::{Catalogue, Entry, Form, conformance};
-use filter_api::{Format, Frame, FrameMut};
+use filter_api::{Descriptor, Format, Frame, FrameMut};
 
 use crate::support::filters::{entries, forms};
 
@@ -62,6 +62,12 @@ fn a_filter_says_the_same_of_itself_in_every_form() {
     let linked_in = Catalogue::linked_in();
     for (form, entry) in all().into_iter().filter(|(_, entry)| entry.form != Form::LinkedIn) {
         let own = linked_in.find(entry.descriptor.name).unwrap();
-        assert_eq!(format!("{:?}", entry.descriptor), format!("{:?}", own.descriptor), "{form}");
+        // The C contract has one bit for each format: which one a filter likes best stays at home.
+        let told = |descriptor: &Descriptor| {
+            let mut reads = descriptor.reads.to_vec();
+            reads.sort_by_key(|format| format.bit());
+            (reads, format!("{:?}", Descriptor { reads: &[], ..*descriptor }))
+        };
+        assert_eq!(told(entry.descriptor), told(own.descriptor), "{form}");
     }
 }

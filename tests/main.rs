@@ -12,6 +12,8 @@ mod allocation;
 mod architecture;
 /// Every mistake that a user can make gets one clear error; the texts stand in `snapshots/`.
 mod bad_input;
+/// What a bench measures and what it refuses.
+mod bench;
 /// The page in a real browser, from a file and live; pictures of it in `target/browser`.
 mod browser;
 /// Learned policies combined: files, figures, disagreements, mistakes.
@@ -33,6 +35,8 @@ mod modules;
 mod native;
 /// A filter from the template: built, listed, checked, learned with.
 mod new_filter;
+/// Behaviour packs: made, signed, refused, installed, shared.
+mod pack;
 /// The page of a run as a file: its data, its size, its policy.
 mod page;
 /// Filters listed and photographs seen through them; what cannot be seen.

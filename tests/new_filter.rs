@@ -29,7 +29,7 @@ fn a_new_filter_builds_is_listed_keeps_the_law_and_learns() {
     let show = bench.success(&["plugins", "show", "ink", &folder, &allow]);
     assert!(show.contains("level: 1 to 255 (grey levels, whole), default 15"), "{show}");
     let check = bench.success(&["plugins", "check", "ink", &folder, &allow]);
-    assert!(check.contains("keeps the law of filters: 300 frames"), "{check}");
+    assert!(check.contains("keeps the law of filters: 400 frames"), "{check}");
     let script = std::fs::read_to_string(bench.path().join("ink/example.rhai")).unwrap();
     let world = root().join("worlds/room.toml").canonicalize().unwrap();
     bench.write("ink/example.rhai", script.replace("\"room\"", &format!("{:?}", world.to_str().unwrap())));

@@ -1,5 +1,6 @@
 //! The command line: names, defaults and help, no logic.
 
+mod pack;
 mod recorded;
 mod watch;
 
@@ -7,6 +8,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+pub(crate) use pack::*;
 pub(crate) use recorded::{ExplainArguments, ReplayArguments, RescoreArguments};
 pub(crate) use watch::WatchArguments;
 
@@ -42,6 +44,8 @@ pub(crate) enum Command {
     Plugins(PluginsArguments),
     /// Write a new filter that builds, to change it into your own
     New(NewArguments),
+    /// Share a behaviour: one signed file that carries its own evidence
+    Pack(PackArguments),
     /// Print the reference page of the script language
     Reference(ReferenceArguments),
     /// Serve one native filter to an engine that runs with --isolate; nothing for people
@@ -62,6 +66,7 @@ impl Command {
             Self::Reproduce(arguments) => arguments.json,
             Self::Filter(arguments) => arguments.json,
             Self::Plugins(arguments) => arguments.json,
+            Self::Pack(arguments) => arguments.json,
             Self::New(_) | Self::Reference(_) | Self::FilterWorker(_) => false,
         }
     }
@@ -71,9 +76,9 @@ impl Command {
 /// stopped by Ctrl-C (what was learned is kept).
 #[derive(Debug, Args)]
 #[command(after_help = "Exit status: 0 learned; 1 not good enough; 2 usage; 3 bad input file; 4 a limit stopped it; \
-                        6 files and disk; 130 stopped by Ctrl-C, with what was learned kept.")]
+                        5 refused for trust; 6 files and disk; 130 stopped by Ctrl-C, with what was learned kept.")]
 pub(crate) struct RunArguments {
-    /// The behaviour's script, such as scripts/wall.rhai
+    /// The behaviour: a script such as scripts/wall.rhai, a .pack file, a pack's folder, or an installed pack's name
     pub(crate) behaviour: PathBuf,
     /// The first seed
     #[arg(long, default_value = "1", value_parser = seed, allow_hyphen_values = true)]
@@ -102,6 +107,9 @@ pub(crate) struct RunArguments {
     /// The steps from one recorded image to the next
     #[arg(long, default_value = "10", value_parser = count, allow_hyphen_values = true, value_name = "N")]
     pub(crate) record_every: u64,
+    /// Run a .pack file that is not signed
+    #[arg(long)]
+    pub(crate) allow_unsigned: bool,
     /// Print the summary as JSON on standard output, and nothing else there
     #[arg(long)]
     pub(crate) json: bool,
@@ -111,7 +119,7 @@ pub(crate) struct RunArguments {
 
 #[derive(Debug, Args)]
 pub(crate) struct TestArguments {
-    /// The folder of a run, such as runs/wall/1
+    /// The folder of a run, such as runs/wall/1; or a .pack file or an installed pack's name, for the policy that it carries
     pub(crate) run: PathBuf,
     /// Another world: its name, or the path of a world file; without it, the one that the run learned in
     #[arg(long)]
@@ -128,6 +136,9 @@ pub(crate) struct TestArguments {
     /// A folder for the figures and pictures of the test; without it, nothing is written
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Run a .pack file that is not signed
+    #[arg(long)]
+    pub(crate) allow_unsigned: bool,
     /// Print the figures as JSON on standard output, and nothing else there
     #[arg(long)]
     pub(crate) json: bool,
@@ -143,10 +154,30 @@ pub(crate) struct BenchArguments {
     /// Another world: its name, or the path of a world file
     #[arg(long)]
     pub(crate) world: Option<String>,
-    /// Change a setting of the script, such as camera.width_px=320; may be given again
+    /// Another size of the image, such as 320x240
+    #[arg(long, value_parser = size, value_name = "WIDTHxHEIGHT")]
+    pub(crate) size: Option<(u64, u64)>,
+    /// Another lens: pinhole or fisheye
+    #[arg(long)]
+    pub(crate) lens: Option<String>,
+    /// Draw speckles (value noise, 15 cm, 6 grey levels) on the floor and on every plain surface, and add pixel noise of at
+    /// least 2 grey levels
+    #[arg(long)]
+    pub(crate) texture: bool,
+    /// Also measure how a step grows with boxes out of sight, states, pixels and threads (takes a minute)
+    #[arg(long)]
+    pub(crate) growth: bool,
+    /// With --growth: the folder for growth.svg and growth.png
+    #[arg(long, requires = "growth", value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Change a setting of the script, such as camera.noise=0; may be given again
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
-    /// How many steps each figure is measured over
+    /// Only learn so many steps, for programs that count instructions
+    #[arg(long, hide = true, value_parser = count, value_name = "N")]
+    pub(crate) count_steps: Option<u64>,
+    /// How many steps each figure is measured over, 1200 or more; times are those of the processor, so that other programs
+    /// disturb little
     #[arg(long, default_value = "20000", value_parser = count, allow_hyphen_values = true, value_name = "N")]
     pub(crate) steps: u64,
     /// Print the figures as JSON on standard output, and nothing else there
@@ -302,6 +333,14 @@ fn count(text: &str) -> Result<u64, String> {
     match text.parse() {
         Ok(count) if (1..=1_000_000_000).contains(&count) => Ok(count),
         _ => Err("write a whole number from 1 to 1000000000".to_owned()),
+    }
+}
+
+fn size(text: &str) -> Result<(u64, u64), String> {
+    let parts = text.split_once('x').map(|(width, height)| (width.parse(), height.parse()));
+    match parts {
+        Some((Ok(width), Ok(height))) => Ok((width, height)),
+        _ => Err("write the width and the height in pixels, such as 320x240".to_owned()),
     }
 }
 

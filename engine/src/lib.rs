@@ -45,3 +45,5 @@ pub mod store;
 
 #[cfg(feature = "serve")]
 pub mod watch;
+
+pub mod pack;

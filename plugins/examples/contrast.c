@@ -68,6 +68,6 @@ static const filter_parameter parameters[] = {
 FILTER_EXPORT(.name = FILTER_TEXT("contrast"), .version = FILTER_TEXT("1.0"),
               .licence = FILTER_TEXT("MIT OR Apache-2.0"),
               .purpose = FILTER_TEXT("Stretches brightness from black to white."),
-              .reads = FILTER_RGB | FILTER_GREY, .writes = FILTER_GREY,
+              .reads = FILTER_RGB | FILTER_GREY | FILTER_BRIGHTNESS, .writes = FILTER_GREY,
               .parameter_count = 1, .parameters = parameters,
               .create = create, .process = process, .destroy = destroy);

@@ -28,7 +28,11 @@
 enum {
     FILTER_RGB = 1,  /* three bytes: red, green, blue */
     FILTER_GREY = 2, /* one byte of brightness */
-    FILTER_MASK = 4  /* one byte, 0 or 255 */
+    FILTER_MASK = 4, /* one byte, 0 or 255 */
+
+    /* Only in filter_plugin.reads, beside FILTER_RGB and FILTER_GREY: of colour the filter sees the brightness alone, so
+     * that a host may pass (77 R + 150 G + 29 B) / 256, rounded down, as a grey frame instead and get the same output. */
+    FILTER_BRIGHTNESS = 8
 };
 
 /* What kind of number a parameter is. */

@@ -13,6 +13,10 @@ use super::root;
 /// The filters of this project that need no other library, and so can be built without Cargo.
 pub(crate) const PLAIN: [&str; 6] = ["blur", "colour", "floor", "horizon", "sobel", "threshold"];
 
+/// What they are built with: the contract, and what compiles them for each processor.
+const LIBRARIES_OF_FILTERS: [(&str, &str); 2] =
+    [("filter_api", "plugins/filter-api/src/lib.rs"), ("dispatch", "plugins/dispatch/src/lib.rs")];
+
 /// SHA-256 of a file as `--allow-native` wants it.
 pub(crate) fn digest(path: &Path) -> String {
     let hash = Sha256::digest(std::fs::read(path).unwrap());
@@ -69,13 +73,16 @@ fn native() -> PathBuf {
 
 /// A Rust filter as a native library of this machine.
 pub(crate) fn rust_native(source: &Path, name: &str, folder: &Path) {
-    static CONTRACT: OnceLock<PathBuf> = OnceLock::new();
-    let contract = CONTRACT.get_or_init(|| {
-        let path = self::folder("contract").join("libfilter_api.rlib");
-        let mut rustc = Command::new("rustc");
-        rustc.args(["--edition=2021", "-Copt-level=3", "--crate-type=rlib", "--crate-name=filter_api", "-o"]);
-        done(rustc.arg(&path).arg(root().join("plugins/filter-api/src/lib.rs")));
-        path
+    static LIBRARIES: OnceLock<Vec<String>> = OnceLock::new();
+    let libraries = LIBRARIES.get_or_init(|| {
+        let build = |(name, source): (&str, &str)| {
+            let path = self::folder("contract").join(format!("lib{name}.rlib"));
+            let mut rustc = Command::new("rustc");
+            rustc.args(["--edition=2021", "-Copt-level=3", "--crate-type=rlib", "--crate-name", name, "-o"]);
+            done(rustc.arg(&path).arg(root().join(source)));
+            format!("--extern={name}={}", path.display())
+        };
+        LIBRARIES_OF_FILTERS.map(build).into()
     });
     let mut rustc = Command::new("rustc");
     rustc.args([
@@ -86,7 +93,7 @@ pub(crate) fn rust_native(source: &Path, name: &str, folder: &Path) {
         "--crate-name",
         name,
     ]);
-    rustc.arg("--extern").arg(format!("filter_api={}", contract.display()));
+    rustc.args(libraries);
     rustc.env("CARGO_PKG_VERSION", env!("CARGO_PKG_VERSION")).arg(source);
     done(rustc.arg("-o").arg(folder.join(format!("lib{name}.so"))));
 }
@@ -103,7 +110,6 @@ fn wasm(features: &str) -> Option<PathBuf> {
         return None;
     };
     let folder = folder(if features.is_empty() { "wasm" } else { "wasm-simd" });
-    let contract = self::folder("contract").join(format!("libfilter_api-wasm{features}.rlib"));
     let command = |crate_type: &str, name: &str, source: &Path, out: &Path| {
         let mut command = Command::new(rustc);
         command.args(["--edition=2021", "-O", "--target=wasm32-unknown-unknown", "-Cpanic=abort", "-Cstrip=symbols"]);
@@ -114,11 +120,15 @@ fn wasm(features: &str) -> Option<PathBuf> {
         command.env("CARGO_PKG_VERSION", env!("CARGO_PKG_VERSION")).arg(source).arg("-o").arg(out);
         command
     };
-    done(&mut command("rlib", "filter_api", &root().join("plugins/filter-api/src/lib.rs"), &contract));
+    let libraries = LIBRARIES_OF_FILTERS.map(|(name, source)| {
+        let path = self::folder("contract").join(format!("lib{name}-wasm{features}.rlib"));
+        done(&mut command("rlib", name, &root().join(source), &path));
+        format!("--extern={name}={}", path.display())
+    });
     for name in PLAIN {
         let (source, out) = (root().join(format!("plugins/{name}/src/lib.rs")), folder.join(format!("{name}.wasm")));
         let mut command = command("cdylib", name, &source, &out);
-        done(command.arg("--cfg=filter_library").arg(format!("--extern=filter_api={}", contract.display())));
+        done(command.arg("--cfg=filter_library").args(&libraries));
     }
     Some(folder)
 }

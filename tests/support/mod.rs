@@ -80,6 +80,7 @@ impl Bench {
     pub(crate) fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_engine"));
         command.args(arguments).current_dir(self.path()).env("NO_COLOR", "1").env("COLUMNS", "100");
+        command.env("ENGINE_CONFIG_DIR", self.path().join(".config")).env("ENGINE_DATA_DIR", self.path().join(".data"));
         command
     }
 
@@ -92,6 +93,14 @@ impl Bench {
         let output = self.engine(arguments);
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         String::from_utf8_lossy(&output.stdout).into_owned()
+    }
+
+    /// Standard output of a command that must succeed.
+    #[track_caller]
+    pub(crate) fn ok(&self, arguments: &[&str]) -> String {
+        let output = self.engine(arguments);
+        assert!(output.status.success(), "{arguments:?}: {}", told(&output));
+        String::from_utf8(output.stdout).unwrap()
     }
 
     /// Exit status and standard error, for a snapshot.

@@ -11,7 +11,7 @@ use engine::experiment::{
 use engine::page::SeedData;
 use engine::report::{disagreements_csv, write_atomic};
 use engine::robot::SimulatedRobot;
-use engine::store::{RunLog, load_members, run_to_toml};
+use engine::store::{RunLog, run_to_toml};
 
 use super::folder::{RunFolder, create, draw_frame, draw_trails, write_json, write_log};
 use super::run::print_many;
@@ -31,7 +31,7 @@ struct SeedResult {
 
 pub(super) fn run(
     arguments: &RunArguments,
-    plan: &Plan,
+    (plan, members): (&Plan, &[Member]),
     seeds: &[u64],
     path: &Path,
     console: &mut Console,
@@ -41,20 +41,19 @@ pub(super) fn run(
         let help = "leave out --steps; --set run.test_steps=N sets the length of the test";
         return Err(Box::new(Diagnostic::new(Kind::Usage, "E-POLICY", message).help(help)).into());
     }
-    let members = load_members(plan)?;
-    RunFolder::create(path, plan, &members, arguments.seed)?;
+    RunFolder::create(path, plan, members, arguments.seed)?;
     let stop = on_ctrl_c()?;
     let results = in_parallel(seeds, arguments.threads.unwrap_or(0) as usize, |seed| {
         let started = Instant::now();
         let mut log = RunLog::new(plan);
         let mut keep = |cycle: &Cycle<SimulatedRobot>, step: &Step| log.test.add(cycle, step, false);
-        let tested = test_combined(plan, &members, seed, &stop, &mut keep)?;
-        let mut summary = Summary::of_combination(plan, &members, &tested, seed, started.elapsed().as_secs_f64());
+        let tested = test_combined(plan, members, seed, &stop, &mut keep)?;
+        let mut summary = Summary::of_combination(plan, members, &tested, seed, started.elapsed().as_secs_f64());
         summary.log_sha256 = Some(log.sha256());
         Ok(SeedResult { tested, summary, log })
     })?;
     let good = if let [result] = results.as_slice() {
-        write_seed(path, plan, &members, result)?;
+        write_seed(path, plan, members, result)?;
         console.json(&result.summary)?;
         print_one(console, result)?;
         result.summary.is_good()
@@ -64,8 +63,8 @@ pub(super) fn run(
         for result in &results {
             let folder = path.join(result.summary.seed.to_string());
             create(&folder)?;
-            write_atomic(&folder.join("run.toml"), run_to_toml(plan, &members, result.summary.seed)?.as_bytes())?;
-            write_seed(&folder, plan, &members, result)?;
+            write_atomic(&folder.join("run.toml"), run_to_toml(plan, members, result.summary.seed)?.as_bytes())?;
+            write_seed(&folder, plan, members, result)?;
         }
         console.json(&spread)?;
         print_many(console, &spread)?;

@@ -91,7 +91,7 @@ fn code(code: &str, console: &mut Console) -> std::result::Result<u8, ConsoleErr
 
 /// Camera, each filter, grid.
 fn draw(plan: &Plan, playback: &Playback<'_>, title: &str) -> Result<Picture> {
-    let (cycle, image) = (playback.cycle(), &playback.cycle().observation().image);
+    let (cycle, image) = (playback.cycle(), &playback.cycle().robot().photograph());
     let mut panels = vec![FramePanel::image("camera", image)];
     panels.extend(cycle.stages().map(|(filter, pixels)| FramePanel {
         name: filter.name,

@@ -1,11 +1,13 @@
 //! One file for each command.
 
+mod behaviour;
 pub(crate) mod bench;
 mod combine;
 pub(crate) mod explain;
 pub(crate) mod filter;
 mod folder;
 pub(crate) mod new;
+pub(crate) mod pack;
 mod page;
 pub(crate) mod plugins;
 pub(crate) mod reference;

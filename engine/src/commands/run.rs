@@ -1,31 +1,29 @@
 //! `engine run`: learn, test the frozen policy, draw.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use engine::diagnostic::{Diagnostic, Kind, Result};
 use engine::experiment::{Overrides, Phase, Plan, Progress, Spread, Summary, in_parallel, learn_into, test_into};
+use engine::pack::Runnable;
 use engine::record::{self, record};
-use engine::reward::Behaviour;
 use engine::store::RunLog;
 
 use super::folder::{RunFolder, SeedResult};
-use super::sources::catalogue;
 use super::stop::{INTERRUPTED, on_ctrl_c};
 use crate::cli::RunArguments;
 use crate::console::{Console, ConsoleError};
 
 pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
-    let behaviour = Arc::new(Behaviour::load(&arguments.behaviour)?);
     let (world, set) = (arguments.world.clone(), arguments.set.clone());
     let overrides = Overrides { world, steps: arguments.steps, test_steps: None, set };
-    let plan = Plan::with_filters(behaviour, &overrides, catalogue(&arguments.filters)?)?;
+    let Runnable { plan, members, .. } =
+        super::behaviour::open(&arguments.behaviour, &overrides, &arguments.filters, arguments.allow_unsigned)?;
     let seeds: Vec<u64> = (0..arguments.seeds).map(|index| arguments.seed.wrapping_add(index)).collect();
     let path = out(arguments, plan.behaviour.name(), &seeds);
     if !plan.settings.policies.is_empty() {
-        return super::combine::run(arguments, &plan, &seeds, &path, console);
+        return super::combine::run(arguments, (&plan, &members), &seeds, &path, console);
     }
     if let Some(path) = &arguments.record {
         check_record(path, &seeds)?;

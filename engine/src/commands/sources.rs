@@ -11,6 +11,11 @@ use crate::console::ConsoleError;
 
 /// The filters that a command may use.
 pub(super) fn catalogue(arguments: &FilterSources) -> Result<Arc<Catalogue>> {
+    Ok(Arc::new(Catalogue::new(sources(arguments)?)?))
+}
+
+/// Where they come from, before any folder is read.
+pub(super) fn sources(arguments: &FilterSources) -> Result<Sources> {
     let mut trust = Trust::default();
     for digest in &arguments.allow_native {
         trust.allow(digest)?;
@@ -23,8 +28,7 @@ pub(super) fn catalogue(arguments: &FilterSources) -> Result<Arc<Catalogue>> {
         Ok(program) => Some(program),
         Err(error) => return Err(Box::new(Diagnostic::disk("find", "this program".as_ref(), &error))),
     };
-    let sources = Sources { folders: arguments.filter_dir.clone(), trust, worker, without_linked_in: false };
-    Ok(Arc::new(Catalogue::new(sources)?))
+    Ok(Sources { folders: arguments.filter_dir.clone(), trust, worker, without_linked_in: false })
 }
 
 /// The user's own trust file, if there is one.

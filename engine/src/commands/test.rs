@@ -2,21 +2,31 @@
 
 use std::sync::atomic::Ordering;
 
+use engine::diagnostic::{Diagnostic, Kind};
 use engine::experiment::{CertaintyGrid, Cycle, Overrides, Step, TestFigures, test_and_watch, test_combined};
+use engine::filter::Sources;
+use engine::pack::{Evidence, Pack, Runnable};
 use engine::robot::SimulatedRobot;
 use engine::store::{Decider, StoredRun};
 
 use super::combine::print_combination;
 use super::folder::TestFolder;
-use super::sources::catalogue;
+use super::sources::{catalogue, sources};
 use super::stop::{INTERRUPTED, on_ctrl_c};
 use crate::cli::TestArguments;
 use crate::console::{Console, ConsoleError};
 
 pub(crate) fn run(arguments: &TestArguments, console: &mut Console) -> Result<u8, ConsoleError> {
-    let StoredRun { plan, seed, decider } = StoredRun::load_with(&arguments.run, catalogue(&arguments.filters)?)?;
     let (world, set) = (arguments.world.clone(), arguments.set.clone());
-    let plan = plan.with_changes(&Overrides { world, steps: None, test_steps: arguments.steps, set })?;
+    let overrides = Overrides { world, steps: None, test_steps: arguments.steps, set };
+    let StoredRun { plan, seed, decider } = match super::behaviour::open_pack(&arguments.run, arguments.allow_unsigned)?
+    {
+        Some((pack, depends)) => of_pack(&pack, &depends, &overrides, sources(&arguments.filters)?)?,
+        None => {
+            let stored = StoredRun::load_with(&arguments.run, catalogue(&arguments.filters)?)?;
+            StoredRun { plan: stored.plan.with_changes(&overrides)?, ..stored }
+        }
+    };
     let stop = on_ctrl_c()?;
     let test_seed = arguments.seed.unwrap_or(seed);
     let mut map = arguments.out.as_ref().and_then(|_| CertaintyGrid::new(&plan.layout, &plan.settings.laser));
@@ -46,6 +56,28 @@ pub(crate) fn run(arguments: &TestArguments, console: &mut Console) -> Result<u8
         return Ok(INTERRUPTED);
     }
     Ok(u8::from(tested.figures.does_task == Some(false)))
+}
+
+/// What a pack carries: its policy, under the seed that learned it, or the policies that it combines.
+fn of_pack(
+    pack: &Pack,
+    depends: &[Pack],
+    overrides: &Overrides,
+    sources: Sources,
+) -> engine::diagnostic::Result<StoredRun> {
+    let Runnable { plan, members, .. } = pack.plan(depends, overrides, sources)?;
+    let evidence = pack.manifest().evidence.as_ref();
+    let seed = evidence.and_then(Evidence::shown).map_or(1, |claim| claim.seed);
+    let decider = match pack.policy(&plan)? {
+        _ if !members.is_empty() => Decider::Combined(members),
+        Some(policy) => Decider::Learned(policy),
+        None => {
+            let message = format!("{} carries no learned policy", pack.title());
+            let help = "learn it with 'engine run', or build it first: engine pack build FOLDER";
+            return Diagnostic::new(Kind::Input, "E-PACK-POLICY", message).help(help).into();
+        }
+    };
+    Ok(StoredRun { plan, seed, decider })
 }
 
 /// The figures of a test for a person, and in words what a reward cannot see.

@@ -8,7 +8,7 @@ use crate::sensors::observation::{Image, Observation, Scan};
 use crate::state::Grid;
 
 use super::{Eyes, Plan};
-use filter_api::Descriptor;
+use filter_api::{Descriptor, Format};
 
 /// What one step led to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,14 +71,16 @@ impl<R: Robot> Cycle<R> {
     /// As [`Cycle::new`].
     pub fn with_eyes(plan: &Plan, robot: R, mut others: Vec<Eyes>) -> Result<Self> {
         let settings = &plan.settings;
+        others.insert(0, Eyes::new(plan.chain()?, plan.grid()?));
+        let format =
+            if others.iter().all(|eyes| eyes.chain.likes() == Format::Grey) { Format::Grey } else { Format::Rgb };
         let observation = Observation {
-            image: Image::new(settings.camera.width_px as usize, settings.camera.height_px as usize),
+            image: Image::of(format, settings.camera.width_px as usize, settings.camera.height_px as usize),
             scan: Scan { ranges_m: vec![0.0; settings.laser.beams as usize] },
             contact: false,
             fallen: false,
             odometry: Twist::default(),
         };
-        others.insert(0, Eyes::new(plan.chain()?, plan.grid()?));
         let mut cycle = Self {
             robot,
             states: vec![0; others.len()],

@@ -178,7 +178,7 @@ impl Snapshot {
         let grid = cycle.grid();
         let counts = grid.counts().iter().enumerate();
         Self {
-            image: cycle.observation().image.clone(),
+            image: cycle.robot().photograph(),
             mask: cycle.mask().to_vec(),
             shares: counts.map(|(cell, count)| *count as f32 / grid.area_px(cell) as f32).collect(),
             grid: grid.size(),

@@ -81,6 +81,12 @@ impl Chain {
         Ok(Self { stages, width_px, height_px })
     }
 
+    /// What its first filter likes best, colour or grey: the mask of an image in this format is that of its colours.
+    #[must_use]
+    pub fn likes(&self) -> Format {
+        self.stages.first().and_then(|stage| stage.descriptor.reads.first()).copied().unwrap_or(Format::Rgb)
+    }
+
     /// The mask of an image: one byte for each pixel, 0 or 255.
     ///
     /// # Errors
@@ -249,7 +255,7 @@ mod tests {
     #[test]
     fn a_chain_must_fit_together_from_colour_to_a_mask() {
         let after_mask = error(&[stage("threshold", &[]), stage("blur", &[])]);
-        assert_eq!(after_mask.message, "filter 'blur' reads colour or grey, not a mask");
+        assert_eq!(after_mask.message, "filter 'blur' reads grey or colour, not a mask");
         assert_eq!(after_mask.help.as_deref(), Some("put it earlier in the chain"));
         let first = error(&[stage("horizon", &[]), stage("sobel", &[])]);
         assert_eq!(first.message, "filter 'horizon' reads a mask, not colour");
@@ -257,6 +263,22 @@ mod tests {
         assert_eq!(first.help.as_deref(), Some(help));
         let grey_at_the_end = error(&[stage("blur", &[])]);
         assert_eq!(grey_at_the_end.message, "the last filter writes grey, but the grid needs a mask");
+    }
+
+    #[test]
+    fn a_filter_that_likes_grey_best_sees_the_brightness_of_colours_alone() {
+        let mut random = crate::random::Random::new(1, crate::random::Stream::Test);
+        let (mut image, mut grey) = (Image::new(16, 12), Image::of(Format::Grey, 16, 12));
+        image.pixels.fill_with(|| random.below(256) as u8);
+        image.frame().unwrap().write_luma(&mut grey.pixels).unwrap();
+        let catalogue = Catalogue::linked_in();
+        for name in ["blur", "scharr", "sobel", "threshold"] {
+            let stages = [stage(name, &[]), stage("threshold", &[])];
+            let mut chain = Chain::new(&stages[..if name == "blur" { 2 } else { 1 }], 16, 12, &catalogue).unwrap();
+            assert_eq!(chain.likes(), Format::Grey);
+            let of_colours = chain.apply(&image).unwrap().to_vec();
+            assert_eq!(chain.apply(&grey).unwrap(), of_colours, "{name}");
+        }
     }
 
     #[test]

@@ -55,7 +55,26 @@ fn check(entry: &Entry, values: &[f64], mut used: Box<dyn Running>) -> Result<u6
             frames += 3;
         }
     }
+    if entry.descriptor.reads.starts_with(&[Format::Grey]) && entry.descriptor.reads.contains(&Format::Rgb) {
+        frames += check_brightness(entry, values)?;
+    }
     Ok(frames)
+}
+
+/// A filter that likes grey best must see nothing of colour but its brightness, since hosts pass either.
+fn check_brightness(entry: &Entry, values: &[f64]) -> Result<u64> {
+    let mut filter = (entry.create)(values)?;
+    for (index, size) in SIZES.into_iter().enumerate() {
+        let colours = noise(index as u32, Format::Rgb, size.0 * size.1);
+        let mut luma = vec![0; size.0 * size.1];
+        let whole = Frame::new(size.0, size.1, Format::Rgb, &colours).and_then(|frame| frame.write_luma(&mut luma));
+        let of_colours = output(entry, filter.as_mut(), Format::Rgb, size, &colours, 7)?;
+        let of_grey = output(entry, filter.as_mut(), Format::Grey, size, &luma, 7)?;
+        if whole.is_err() || of_colours != of_grey {
+            return broken(entry, "it says that it likes grey best, but sees more of a colour than its brightness");
+        }
+    }
+    Ok(2 * SIZES.len() as u64)
 }
 
 /// What a filter makes of a frame, in a buffer full of `before`.

@@ -15,7 +15,7 @@ pub use simulated::SimulatedRobot;
 
 /// What the step loop needs of a robot.
 pub trait Robot {
-    /// Fills `observation` with what the sensors measure now.
+    /// Fills `observation` with what the sensors measure now. The image comes in the format that it has, or in colour.
     ///
     /// # Errors
     /// If a sensor is broken: a blank or frozen camera.

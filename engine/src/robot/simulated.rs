@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::{Recovery, Robot};
 use crate::diagnostic::Result;
 use crate::geometry::Twist;
-use crate::sensors::observation::Observation;
+use crate::sensors::observation::{Image, Observation};
 use crate::sensors::{Camera, CameraWatch, Laser, self_test};
 use crate::settings::{CameraSettings, Settings};
 use crate::world::{Layout, Motion, World};
@@ -39,6 +39,16 @@ impl SimulatedRobot {
         self_test(&mut quiet, &world.body().world_from_robot(), world.moving())?;
         let (watch, motion) = (CameraWatch::new(), Motion::default());
         Ok(Self { world, camera, laser, watch, recovery, motion, moved: false })
+    }
+
+    /// The image of the last observation in colour, for pictures; call it before anything moves.
+    #[must_use]
+    pub fn photograph(&self) -> Image {
+        let mut camera = self.camera.clone();
+        camera.set_frames(camera.frames().saturating_sub(1));
+        let mut image = Image::new(0, 0);
+        camera.render(&self.world.body().world_from_robot(), self.world.moving(), &mut image);
+        image
     }
 
     /// The truth, for tests and reports only.

@@ -1,27 +1,28 @@
 //! The camera: draws what stands before it, visible faces first and colours afterwards.
 
+use super::canvas::{Canvas, Colours, Weights};
 use super::drawing::Drawing;
 use super::lens::Fisheye;
+use super::luma;
 use super::noise::PixelNoise;
 use super::observation::Image;
-use super::painting::{Drawn, Painter};
+use super::painting::{Drawn, Painting};
 use super::spans::Spans;
+use super::stretches::{FLOOR_FACE, OUTSIDE_LENS, SKY_FACE, Sight, Stretches};
 use super::surface::Surfaces;
-use super::texture::{BATCH, Looks};
+use super::texture::{Looks, Mark};
 use super::view::{Affine, Frustum, Pinhole, View};
 use crate::geometry::{Isometry3, Point3, Vector3};
 use crate::settings::CameraSettings;
 use crate::world::scene::{Scene, Solid};
+use dispatch::Processor;
+use filter_api::Format;
 use std::sync::Arc;
 
 /// Faces of movers for which there is room from the start.
 const MOVING_FACES: usize = 256;
 /// What is seen where there is nothing.
 const SKY: [u8; 3] = [186, 198, 210];
-/// Numbers of the three things that are always there, among drawn faces and looks alike.
-const SKY_FACE: u32 = 0;
-const FLOOR_FACE: u32 = 1;
-const OUTSIDE_LENS: u32 = 2;
 
 /// A colour camera fixed to the robot, with a pinhole or an equidistant fisheye lens.
 ///
@@ -40,11 +41,16 @@ pub struct Camera {
     surfaces: Surfaces,
     moving: Surfaces,
     looks: Looks,
-    standing_looks: (usize, usize),
+    standing_looks: Mark,
     spans: Spans,
+    stretches: Stretches,
     seen: Vec<usize>,
     drawn: Vec<Drawn>,
     nearness: Vec<Affine>,
+    processor: Processor,
+    /// What grey images are made from: the weighted sums of the colours, or colours that noise may cut off.
+    weights: Vec<u16>,
+    colours: Vec<u8>,
 }
 
 impl Camera {
@@ -68,7 +74,8 @@ impl Camera {
         let mut looks = Looks::default();
         looks.push_plain(SKY);
         looks.push(&parts.materials[parts.floor], &parts.light, &Vector3::z());
-        looks.push_plain([0; 3]);
+        let black = fisheye.as_ref().is_some_and(Fisheye::has_outside);
+        looks.push_plain(if black { [0; 3] } else { SKY });
         let mut faces = 0;
         for face in surfaces.faces() {
             faces += 1;
@@ -86,12 +93,16 @@ impl Camera {
             mount,
             surfaces,
             moving: Surfaces::with_room(),
-            standing_looks: looks.length(),
+            standing_looks: looks.mark(),
             looks,
             spans: Spans::new(pinhole.width_px, pinhole.height_px),
+            stretches: Stretches::with_room(height_px),
             seen: Vec::with_capacity(parts.solids.len()),
             drawn: Vec::with_capacity(faces + MOVING_FACES),
             nearness: Vec::with_capacity(faces + MOVING_FACES),
+            processor: Processor::best(),
+            weights: Vec::new(),
+            colours: Vec::new(),
         }
     }
 
@@ -106,23 +117,86 @@ impl Camera {
         self.frame = frames;
     }
 
-    /// Renders into `image`, which gets the camera's size. `world_from_robot` is the robot's base on the ground, x
-    /// forward; `moving` are the solids that do not belong to the scene, where they stand now.
+    /// Renders into `image`, which gets the camera's size and keeps its format, colour or grey; grey is the luma of the
+    /// same image in colour. `world_from_robot` is the robot's base on the ground, x forward; `moving` are the solids
+    /// that do not belong to the scene, where they stand now.
     pub fn render(&mut self, world_from_robot: &Isometry3, moving: &[Solid], image: &mut Image) {
-        if (image.width_px, image.height_px) != (self.width_px, self.height_px)
-            || image.pixels.len() != self.width_px * self.height_px * 3
+        let (width, height) = (self.width_px, self.height_px);
+        if (image.width_px, image.height_px) != (width, height)
+            || image.pixels.len() != width * height * image.format.channels()
         {
-            *image = Image::new(self.width_px, self.height_px);
+            *image = Image::of(image.format, width, height);
         }
         let view = self.view(world_from_robot);
         let frustum = view.frustum();
         self.place_movers(moving, &frustum);
         self.find_visible(&view, &frustum);
-        self.shade(image);
-        if let Some(noise) = &self.noise {
-            noise.add(self.frame, &mut image.pixels, self.width_px * 3);
+        self.list();
+        if image.format == Format::Rgb {
+            self.paint(&mut image.pixels)
+        } else {
+            self.paint_grey(&mut image.pixels)
         }
         self.frame += 1;
+    }
+
+    /// Lists what the pixels show.
+    fn list(&mut self) {
+        let floor = self.nearness[FLOOR_FACE as usize];
+        let sight = Sight { pinhole: self.pinhole, spans: &self.spans, floor };
+        let drawn = &self.drawn;
+        let is_plain = |face: u32| drawn[face as usize].plain;
+        match &self.fisheye {
+            None => self.stretches.see(&sight, is_plain),
+            Some(lens) => self.stretches.see_through(lens, self.width_px, &sight, is_plain),
+        }
+    }
+
+    fn paint_on<C: Canvas>(&self, canvas: C) {
+        self.processor.run(Painting {
+            canvas,
+            stretches: &self.stretches,
+            looks: &self.looks,
+            drawn: &self.drawn,
+            nearness: &self.nearness,
+            size_px: [self.width_px, self.height_px],
+            lens: self.fisheye.as_ref(),
+        });
+    }
+
+    /// Paints three bytes for each pixel.
+    fn paint(&self, pixels: &mut [u8]) {
+        self.paint_on(Colours(pixels));
+        if let Some(noise) = &self.noise {
+            noise.add(self.processor, self.frame, pixels, self.width_px * 3);
+        }
+    }
+
+    /// Paints one byte for each pixel.
+    fn paint_grey(&mut self, pixels: &mut [u8]) {
+        let most = self.noise.as_ref().map_or(0, PixelNoise::most);
+        if !self.looks.keep_within(most.max(1)) {
+            // Noise is cut off at black and white channel by channel.
+            let mut colours = std::mem::take(&mut self.colours);
+            colours.resize(pixels.len() * 3, 0);
+            self.paint(&mut colours);
+            luma::of_colours(self.processor, &colours, pixels);
+            self.colours = colours;
+            return;
+        }
+        let mut weights = std::mem::take(&mut self.weights);
+        weights.resize(pixels.len(), 0);
+        self.paint_on(Weights(&mut weights));
+        match &self.noise {
+            None => luma::of_weights(self.processor, &weights, pixels),
+            Some(noise) => {
+                let rows = weights.chunks_exact(self.width_px).zip(pixels.chunks_exact_mut(self.width_px));
+                for (row, (weights, pixels)) in rows.enumerate() {
+                    luma::of_noisy_weights(self.processor, weights, noise.of_row(self.frame, row), pixels);
+                }
+            }
+        }
+        self.weights = weights;
     }
 
     fn view(&self, world_from_robot: &Isometry3) -> View {
@@ -155,7 +229,12 @@ impl Camera {
         self.drawn.clear();
         self.nearness.clear();
         for look in [SKY_FACE, FLOOR_FACE, OUTSIDE_LENS] {
-            self.drawn.push(Drawn { look: look as usize, coordinates: [Affine::default(); 2] });
+            let look = look as usize;
+            self.drawn.push(Drawn {
+                look,
+                plain: self.looks.get(look).is_plain(),
+                coordinates: [Affine::default(); 2],
+            });
             self.nearness.push(Affine::default());
         }
         if let Some(nearness) = view.nearness(&Vector3::z(), 0.0) {
@@ -183,81 +262,7 @@ impl Camera {
             }
         }
         for (index, face) in self.moving.faces().iter().enumerate() {
-            drawing.face(&self.moving, face, self.standing_looks.0 + index);
-        }
-    }
-
-    fn shade(&self, image: &mut Image) {
-        let mut painter = Painter::new(&mut image.pixels, &self.looks, &self.drawn, &self.nearness);
-        match &self.fisheye {
-            None => self.shade_rows(&mut painter),
-            Some(lens) => self.shade_through(lens, &mut painter),
-        }
-        painter.flush(self.width_px * self.height_px);
-    }
-
-    fn shade_rows(&self, painter: &mut Painter) {
-        for row in 0..self.height_px {
-            let base = row * self.width_px;
-            let floor = self.floor(row);
-            let background = |painter: &mut Painter, from: usize, to: usize| {
-                let (first, last) = (floor.0.clamp(from, to), floor.1.clamp(from, to));
-                painter.stretch(SKY_FACE, base, row, (from, first));
-                painter.stretch(FLOOR_FACE, base, row, (first, last));
-                painter.stretch(SKY_FACE, base, row, (last, to));
-            };
-            let mut from = 0;
-            for run in self.spans.row(row) {
-                let (start, end) = (usize::from(run.start), usize::from(run.end));
-                background(painter, from, start);
-                painter.stretch(run.face, base, row, (start, end));
-                from = end;
-            }
-            background(painter, from, self.width_px);
-        }
-    }
-
-    /// The pixels of a row below the horizon.
-    fn floor(&self, row: usize) -> (usize, usize) {
-        let nearness = &self.nearness[FLOOR_FACE as usize];
-        let width = self.pinhole.width_px;
-        let at = |pixel: f64| nearness.at(pixel, row as f64 + 0.5);
-        let (left, right) = (at(0.5), at(width as f64 - 0.5));
-        if left > 0.0 && right > 0.0 {
-            return (0, width);
-        }
-        if left <= 0.0 && right <= 0.0 {
-            return (0, 0);
-        }
-        let crossing = (-at(0.0) / nearness.0[0] + 0.5).clamp(0.0, width as f64) as usize;
-        if left > 0.0 { (0, crossing) } else { (crossing, width) }
-    }
-
-    fn shade_through(&self, lens: &Fisheye, painter: &mut Painter) {
-        let mut first = 0;
-        for (xs, ys) in lens.xs.chunks(self.width_px).zip(lens.ys.chunks(self.width_px)) {
-            let mut column = 0;
-            while column < xs.len() {
-                let face = self.seen_at(xs[column], ys[column]);
-                let most = xs.len().min(column + BATCH);
-                let same = (column + 1..most).find(|&next| self.seen_at(xs[next], ys[next]) != face).unwrap_or(most);
-                painter.scattered(face, first + column, &xs[column..same], &ys[column..same]);
-                column = same;
-            }
-            first += xs.len();
-        }
-    }
-
-    /// The face at a place of the pinhole view.
-    fn seen_at(&self, x: f32, y: f32) -> u32 {
-        if x.is_nan() {
-            return OUTSIDE_LENS;
-        }
-        let (column, row) = (x as u16, y as usize);
-        match self.spans.row(row).iter().find(|run| column < run.end) {
-            Some(run) if run.start <= column => run.face,
-            _ if self.nearness[FLOOR_FACE as usize].at(f64::from(x), f64::from(y)) > 0.0 => FLOOR_FACE,
-            _ => SKY_FACE,
+            drawing.face(&self.moving, face, self.standing_looks.looks + index);
         }
     }
 }

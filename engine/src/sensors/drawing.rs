@@ -50,7 +50,7 @@ impl Drawing<'_> {
         let plain = self.looks.get(look).is_plain();
         let coordinates = if plain { [Affine::default(); 2] } else { view.coordinates(face, nearness) };
         self.nearness.push(nearness);
-        self.drawn.push(Drawn { look, coordinates });
+        self.drawn.push(Drawn { look, plain, coordinates });
         self.spans.draw(&corners[..count], self.drawn.len() as u32 - 1, self.nearness);
     }
 }

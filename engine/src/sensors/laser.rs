@@ -8,6 +8,7 @@ use crate::geometry::{Isometry3, Vector3};
 use crate::random::{NORMAL_RUN, normal_table};
 use crate::settings::LaserSettings;
 use crate::world::scene::{Scene, Shape, Solid};
+use dispatch::{Processor, compiled_for_each_processor};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -40,6 +41,7 @@ struct Beams {
     ahead: Vec<f64>,
     left: Vec<f64>,
     ranges_m: Vec<f64>,
+    processor: Processor,
 }
 
 /// The plane of the scan at its place in the world.
@@ -77,6 +79,7 @@ impl Laser {
                 ahead: (0..count).map(|beam| libm::cos(angle(beam))).collect(),
                 left: (0..count).map(|beam| libm::sin(angle(beam))).collect(),
                 ranges_m: vec![0.0; count],
+                processor: Processor::best(),
             },
         }
     }
@@ -228,11 +231,8 @@ impl Beams {
         if first >= last || turn < 1e-12 {
             return;
         }
-        let directions = self.ahead[first..last].iter().zip(&self.left[first..last]);
-        for (range, (ahead, beside)) in self.ranges_m[first..last].iter_mut().zip(directions) {
-            let met = turn / (ahead * along[1] - beside * along[0]);
-            *range = if met < *range && met > 0.0 { met } else { *range };
-        }
+        let directions = [&self.ahead[first..last], &self.left[first..last]];
+        shorten(self.processor, &mut self.ranges_m[first..last], directions, turn, along);
     }
 
     /// The first beam for which `before` does not hold; it gets how far the point lies to the left of the beam.
@@ -300,6 +300,18 @@ impl Beams {
         let first = first.unwrap_or_else(|| self.first_beam(right_end, |side| side > 0.0).saturating_sub(1));
         let last = last.unwrap_or_else(|| (self.first_beam(left_end, |side| side >= 0.0) + 1).min(count));
         (first, last)
+    }
+}
+
+compiled_for_each_processor! {
+    /// Shortens beams that meet a line, by their directions ahead and to the left: `turn` is how far the line's ends turn
+    /// about the laser (a cross product), `along` leads from one to the other.
+    fn shorten<'a>(ranges_m: &'a mut [f64], directions: [&'a [f64]; 2], turn: f64, along: [f64; 2]) {
+        let [aheads, lefts] = directions;
+        for (range, (ahead, left)) in ranges_m.iter_mut().zip(aheads.iter().zip(lefts)) {
+            let met = turn / (ahead * along[1] - left * along[0]);
+            *range = if met < *range && met > 0.0 { met } else { *range };
+        }
     }
 }
 

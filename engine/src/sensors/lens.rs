@@ -20,6 +20,11 @@ pub(super) struct Fisheye {
 }
 
 impl Fisheye {
+    /// Whether the image has corners outside the lens.
+    pub(super) fn has_outside(&self) -> bool {
+        self.xs.iter().any(|x| x.is_nan())
+    }
+
     /// The map of a `width_px` x `height_px` image whose rows span `field_of_view_rad`.
     pub(super) fn new(width_px: usize, height_px: usize, field_of_view_rad: f64) -> Self {
         let focal_px = width_px as f64 / field_of_view_rad;

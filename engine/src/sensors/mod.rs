@@ -1,19 +1,23 @@
 //! What the robot senses: the camera's image and the laser's ranges, drawn from the true world.
 //!
 //! Both sensors work from the flat faces of solids (`surface`). The camera finds which face is seen in which run of
-//! each row (`view`, `drawing`, `spans`), then colours the runs (`texture`, `painting`). Images from elsewhere come as
+//! each row (`view`, `drawing`, `spans`), lists the runs pixel by pixel (`stretches`) and
+//! colours them (`texture`, `painting`, `canvas`, `luma`). Images from elsewhere come as
 //! photographs (`photograph`).
 
 pub mod observation;
 
 mod camera;
+mod canvas;
 mod drawing;
 mod laser;
 mod lens;
+mod luma;
 mod noise;
 mod painting;
 mod photograph;
 mod spans;
+mod stretches;
 mod surface;
 mod texture;
 mod view;

@@ -3,22 +3,31 @@
 use crate::geometry::Twist;
 use filter_api::{FilterError, Format, Frame};
 
-/// A camera image that owns its pixels: RGB, row-major, top row first.
+/// A camera image that owns its pixels: row-major, top row first.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Image {
     /// Pixels in a row.
     pub width_px: usize,
     /// Rows.
     pub height_px: usize,
-    /// `width_px * height_px * 3` bytes.
+    /// What one pixel holds: colour, or brightness alone where nothing else is looked at.
+    pub format: Format,
+    /// `width_px * height_px * format.channels()` bytes.
     pub pixels: Vec<u8>,
 }
 
 impl Image {
-    /// A black image.
+    /// A black colour image.
     #[must_use]
     pub fn new(width_px: usize, height_px: usize) -> Self {
-        Self { width_px, height_px, pixels: vec![0; width_px * height_px * Format::Rgb.channels()] }
+        Self::of(Format::Rgb, width_px, height_px)
+    }
+
+    /// A black image of a format. A camera that fills it gives colour, or the luma of that very colour
+    /// ([`Frame::write_luma`]).
+    #[must_use]
+    pub fn of(format: Format, width_px: usize, height_px: usize) -> Self {
+        Self { width_px, height_px, format, pixels: vec![0; width_px * height_px * format.channels()] }
     }
 
     /// The image as filters read it.
@@ -26,7 +35,7 @@ impl Image {
     /// # Errors
     /// If the pixels do not fit the size.
     pub fn frame(&self) -> Result<Frame<'_>, FilterError> {
-        Frame::new(self.width_px, self.height_px, Format::Rgb, &self.pixels)
+        Frame::new(self.width_px, self.height_px, self.format, &self.pixels)
     }
 }
 

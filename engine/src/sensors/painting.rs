@@ -1,121 +1,113 @@
-//! Turns visible faces into pixels, in the order of the image's memory.
+//! Turns the list of what is seen into pixels, in the order of the image's memory.
 
+use super::canvas::Canvas;
+use super::lens::Fisheye;
+use super::stretches::{Stretch, Stretches};
 use super::texture::{BATCH, Look, Looks};
 use super::view::Affine;
+use dispatch::Work;
 
 /// A face of the frame at hand.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Drawn {
     /// Index of its look.
     pub(super) look: usize,
+    /// Whether one colour is all there is.
+    pub(super) plain: bool,
     /// Texture coordinates times nearness; nothing for a plain look.
     pub(super) coordinates: [Affine; 2],
 }
 
-/// Writes an image from its first pixel to its last.
-///
-/// A stretch may be written too long, since what follows is written afterwards; so every write has a fixed length.
-pub(super) struct Painter<'a> {
-    pub(super) pixels: &'a mut [u8],
+/// A frame to paint. All of it is one piece of work, so that all of it is compiled for each processor.
+pub(super) struct Painting<'a, C> {
+    pub(super) canvas: C,
+    pub(super) stretches: &'a Stretches,
     pub(super) looks: &'a Looks,
     pub(super) drawn: &'a [Drawn],
     pub(super) nearness: &'a [Affine],
-    /// A stretch of one plain face from `start` that is not written yet.
-    pub(super) pending: Option<u32>,
-    pub(super) start: usize,
+    pub(super) size_px: [usize; 2],
+    pub(super) lens: Option<&'a Fisheye>,
 }
 
-impl<'a> Painter<'a> {
-    pub(super) fn new(pixels: &'a mut [u8], looks: &'a Looks, drawn: &'a [Drawn], nearness: &'a [Affine]) -> Self {
-        Self { pixels, looks, drawn, nearness, pending: None, start: 0 }
-    }
+/// Texture coordinates of a batch of places, along and across, metres.
+type Places = [[f32; BATCH]; 2];
 
-    /// Pixels `from..to` of a row show `face`; `base` is the number of the row's first pixel.
-    pub(super) fn stretch(&mut self, face: u32, base: usize, row: usize, (from, to): (usize, usize)) {
-        if from >= to || self.pending == Some(face) {
-            return;
-        }
-        self.flush(base + from);
-        let look = self.look(face);
-        if look.is_plain() {
-            self.pending = Some(face);
-            return;
-        }
-        let drawn = &self.drawn[face as usize];
-        let affine = [drawn.coordinates[0], drawn.coordinates[1], self.nearness[face as usize]];
-        for first in (from..to).step_by(BATCH) {
-            // Values at the batch's start in double precision keep the steps within it exact enough.
-            let starts = affine.map(|value| value.at(first as f64 + 0.5, row as f64 + 0.5) as f32);
-            let steps = affine.map(|value| value.0[0] as f32);
-            let (mut along, mut across) = ([0.0; BATCH], [0.0; BATCH]);
-            for (place, (along, across)) in along.iter_mut().zip(&mut across).enumerate() {
-                let step = place as f32;
-                let distance = 1.0 / (starts[2] + step * steps[2]);
-                *along = (starts[0] + step * steps[0]) * distance;
-                *across = (starts[1] + step * steps[1]) * distance;
+impl<C: Canvas> Work for Painting<'_, C> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(mut self) {
+        let list = self.stretches.list();
+        let [width, height] = self.size_px;
+        for (index, stretch) in list.iter().enumerate() {
+            let first = stretch.first as usize;
+            let end = list.get(index + 1).map_or(width * height, |next| next.first as usize);
+            let look = self.looks.get(self.drawn[stretch.face as usize].look);
+            if look.is_plain() {
+                self.canvas.fill(look, first..end);
+                continue;
             }
-            self.batch(look, base + first, BATCH.min(to - first), (&along, &across));
+            let mut from = first;
+            while from < end {
+                let count = BATCH.min(end - from);
+                let places = match self.lens {
+                    None => self.places_in_row(*stretch, from),
+                    Some(lens) => {
+                        self.places_through(*stretch, &lens.xs[from..from + count], &lens.ys[from..from + count])
+                    }
+                };
+                self.spots(look, from, count, &places);
+                from += count;
+            }
         }
-        self.start = base + to;
+    }
+}
+
+impl<C: Canvas> Painting<'_, C> {
+    /// The three values of a face that are affine over the image: along, across, nearness.
+    #[inline(always)]
+    fn affine(&self, stretch: Stretch) -> [Affine; 3] {
+        let [along, across] = self.drawn[stretch.face as usize].coordinates;
+        [along, across, self.nearness[stretch.face as usize]]
     }
 
-    /// Up to [`BATCH`] pixels from number `first` on show `face`, seen along rays through any places of the view.
-    pub(super) fn scattered(&mut self, face: u32, first: usize, xs: &[f32], ys: &[f32]) {
-        if self.pending == Some(face) {
-            return;
+    /// What pixels from number `first` on see of a face, in one row of the image.
+    #[inline(always)]
+    fn places_in_row(&self, stretch: Stretch, first: usize) -> Places {
+        let (column, row) = (first % self.size_px[0], first / self.size_px[0]);
+        // Values at the batch's start in double precision keep the steps within it exact enough.
+        let affine = self.affine(stretch);
+        let starts = affine.map(|value| value.at(column as f64 + 0.5, row as f64 + 0.5) as f32);
+        let steps = affine.map(|value| value.0[0] as f32);
+        let mut places = [[0.0; BATCH]; 2];
+        let [us, vs] = &mut places;
+        for (place, (u, v)) in us.iter_mut().zip(vs).enumerate() {
+            let step = place as f32;
+            let distance = 1.0 / (starts[2] + step * steps[2]);
+            *u = (starts[0] + step * steps[0]) * distance;
+            *v = (starts[1] + step * steps[1]) * distance;
         }
-        self.flush(first);
-        let look = self.look(face);
-        if look.is_plain() {
-            self.pending = Some(face);
-            return;
-        }
-        let coordinates = self.drawn[face as usize].coordinates;
-        let [along, across, nearness] =
-            [coordinates[0], coordinates[1], self.nearness[face as usize]].map(|value| value.0.map(|part| part as f32));
-        let (mut u, mut v) = ([0.0; BATCH], [0.0; BATCH]);
-        for ((x, y), (u, v)) in xs.iter().zip(ys).zip(u.iter_mut().zip(&mut v)) {
+        places
+    }
+
+    /// The same along rays through any places of the view.
+    #[inline(always)]
+    fn places_through(&self, stretch: Stretch, xs: &[f32], ys: &[f32]) -> Places {
+        let [along, across, nearness] = self.affine(stretch).map(|value| value.0.map(|part| part as f32));
+        let mut places = [[0.0; BATCH]; 2];
+        let [us, vs] = &mut places;
+        for ((x, y), (u, v)) in xs.iter().zip(ys).zip(us.iter_mut().zip(vs)) {
             let distance = 1.0 / (nearness[0] * x + nearness[1] * y + nearness[2]);
             *u = (along[0] * x + along[1] * y + along[2]) * distance;
             *v = (across[0] * x + across[1] * y + across[2]) * distance;
         }
-        self.batch(look, first, xs.len(), (&u, &v));
-        self.start = first + xs.len();
+        places
     }
 
-    fn look(&self, face: u32) -> &'a Look {
-        self.looks.get(self.drawn[face as usize].look)
-    }
-
-    fn batch(&mut self, look: &Look, first: usize, count: usize, (along, across): (&[f32; BATCH], &[f32; BATCH])) {
+    #[inline(always)]
+    fn spots(&mut self, look: &Look, first: usize, count: usize, [along, across]: &Places) {
         let mut indices = [0; BATCH];
         look.choose(along, across, &mut indices);
-        let palette = self.looks.palette(look);
-        for (place, &index) in indices[..count].iter().enumerate() {
-            let byte = (first + place) * 3;
-            let colour = palette[usize::from(index)];
-            if let Some(pixel) = self.pixels.get_mut(byte..byte + 4) {
-                pixel.copy_from_slice(&colour);
-            } else if let Some(pixel) = self.pixels.get_mut(byte..byte + 3) {
-                pixel.copy_from_slice(&colour[..3]);
-            }
-        }
-    }
-
-    /// Writes the pending stretch up to pixel number `end`.
-    pub(super) fn flush(&mut self, end: usize) {
-        if let Some(face) = self.pending.take() {
-            let pattern = &self.look(face).pattern;
-            let (mut byte, last) = (self.start * 3, end * 3);
-            while byte < last {
-                if let Some(pixels) = self.pixels.get_mut(byte..byte + pattern.len()) {
-                    pixels.copy_from_slice(pattern);
-                } else if let Some(pixels) = self.pixels.get_mut(byte..) {
-                    pixels.copy_from_slice(&pattern[..pixels.len()]);
-                }
-                byte += pattern.len();
-            }
-        }
-        self.start = end;
+        self.canvas.spots(self.looks, look, first, &indices[..count]);
     }
 }

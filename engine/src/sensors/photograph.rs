@@ -8,6 +8,7 @@ use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Li
 
 use super::observation::Image;
 use crate::diagnostic::{Diagnostic, Kind, Result, nearest_name, printable};
+use filter_api::Format;
 
 /// The largest file that is read, bytes.
 const MAX_FILE_BYTES: u64 = 64 << 20;
@@ -169,7 +170,7 @@ fn scaled(photograph: &RgbImage, width_px: usize, height_px: usize) -> Image {
     let (left, top) = ((width - across) / 2, (height - down) / 2);
     let cut = crop_imm(photograph, left as u32, top as u32, across as u32, down as u32);
     let pixels = resize(&*cut, width_px as u32, height_px as u32, FilterType::Triangle).into_raw();
-    Image { width_px, height_px, pixels }
+    Image { width_px, height_px, format: Format::Rgb, pixels }
 }
 
 fn shown(path: &Path) -> String {

@@ -4,6 +4,7 @@
 //! them at the ends of their common part is exact, and no depth is stored for single pixels.
 
 use super::view::Affine;
+use dispatch::{Processor, compiled_for_each_processor};
 
 /// Pixels `start..end` of a row that show one face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,11 +23,13 @@ pub(super) struct Spans {
     /// First pixel of the polygon at hand in each row, and one past its last.
     bounds: [Vec<u16>; 2],
     rebuilt: Vec<Run>,
+    processor: Processor,
 }
 
 /// The nearest whole number of `value` clamped to 0..=`limit`, which is below 2^31.
 ///
 /// Adding 1.5 * 2^52 leaves that number in the low bits; unlike a rounding call it works on several rows at once.
+#[inline(always)]
 fn nearest_whole(value: f64, limit: f64) -> u32 {
     (value.max(0.0).min(limit) + 6_755_399_441_055_744.0).to_bits() as u32
 }
@@ -38,6 +41,7 @@ impl Spans {
             rows: (0..height_px).map(|_| Vec::with_capacity(64)).collect(),
             bounds: [vec![0; height_px], vec![0; height_px]],
             rebuilt: Vec::with_capacity(64),
+            processor: Processor::best(),
         }
     }
 
@@ -101,9 +105,17 @@ impl Spans {
         }
         let slope = (bottom[0] - top[0]) / (bottom[1] - top[1]);
         let from_top = 0.5 - top[1];
-        let rows = first as i32..last as i32;
-        for (bound, row) in self.bounds[usize::from(!on_left)][first..last].iter_mut().zip(rows) {
-            *bound = nearest_whole(top[0] + (f64::from(row) + from_top) * slope, width) as u16;
+        let bounds = &mut self.bounds[usize::from(!on_left)][first..last];
+        cross_rows(self.processor, bounds, first as i32, [top[0], from_top, slope], width);
+    }
+}
+
+compiled_for_each_processor! {
+    /// Where a line crosses rows from `first` on: its place at the top, the first row's distance from there, its slope.
+    fn cross_rows<'a>(bounds: &'a mut [u16], first: i32, line: [f64; 3], width: f64) {
+        let [top, from_top, slope] = line;
+        for (bound, row) in bounds.iter_mut().zip(first..) {
+            *bound = nearest_whole(top + (f64::from(row) + from_top) * slope, width) as u16;
         }
     }
 }

@@ -1,5 +1,6 @@
 //! How a lit surface looks: its colours, and which of them a place on it has.
 
+use super::luma::weight;
 use crate::geometry::Vector3;
 use crate::world::scene::{Light, Material, Texture};
 use std::sync::LazyLock;
@@ -7,7 +8,7 @@ use std::sync::LazyLock;
 /// Pixels that are textured at once.
 pub(super) const BATCH: usize = 32;
 /// Pixels in a prepared stretch of plain colour.
-const PATTERN_PX: usize = 16;
+pub(super) const PATTERN_PX: usize = 16;
 /// Lattice points of the noise texture along each axis; then it repeats.
 const LATTICE: usize = 128;
 
@@ -26,6 +27,11 @@ enum Choice {
 pub(super) struct Look {
     /// One stretch of the plain colour.
     pub(super) pattern: [u8; PATTERN_PX * 3],
+    /// The plain colour's weighted sum, 256 times its luma.
+    pub(super) weight: u16,
+    /// The weighted sum of the first colour in the palette, and how much more that of each next one is; true unless a
+    /// colour is black or white in some channel.
+    pub(super) weights: [u16; 2],
     choice: Choice,
     per_m: f32,
     /// First colour of this look in the palette.
@@ -37,10 +43,30 @@ pub(super) struct Look {
 pub(super) struct Looks {
     looks: Vec<Look>,
     palette: Vec<[u8; 4]>,
+    range: Extremes,
+}
+
+/// The least and the greatest byte of some colours.
+#[derive(Debug, Clone, Copy)]
+struct Extremes(u8, u8);
+
+/// How far a list of looks has come.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Mark {
+    pub(super) looks: usize,
+    colours: usize,
+    range: Extremes,
+}
+
+impl Default for Extremes {
+    fn default() -> Self {
+        Self(u8::MAX, 0)
+    }
 }
 
 impl Looks {
     /// The look with this index.
+    #[inline(always)]
     pub(super) fn get(&self, index: usize) -> &Look {
         &self.looks[index]
     }
@@ -50,9 +76,14 @@ impl Looks {
         &self.palette[look.palette_start..]
     }
 
-    /// How many looks and colours there are.
-    pub(super) fn length(&self) -> (usize, usize) {
-        (self.looks.len(), self.palette.len())
+    /// Whether every channel keeps so far from black and white that `most` may be added to it or taken from it.
+    pub(super) fn keep_within(&self, most: u8) -> bool {
+        self.range.0 >= most && self.range.1 <= u8::MAX - most
+    }
+
+    /// What there is now.
+    pub(super) fn mark(&self) -> Mark {
+        Mark { looks: self.looks.len(), colours: self.palette.len(), range: self.range }
     }
 
     /// Makes room for so many looks more.
@@ -61,10 +92,11 @@ impl Looks {
         self.palette.reserve(looks);
     }
 
-    /// Forgets all but the first looks and colours.
-    pub(super) fn truncate(&mut self, (looks, colours): (usize, usize)) {
-        self.looks.truncate(looks);
-        self.palette.truncate(colours);
+    /// Forgets what came after a mark.
+    pub(super) fn truncate(&mut self, mark: Mark) {
+        self.looks.truncate(mark.looks);
+        self.palette.truncate(mark.colours);
+        self.range = mark.range;
     }
 
     /// Adds one plain colour.
@@ -74,7 +106,21 @@ impl Looks {
             pixel.copy_from_slice(&colour);
         }
         let palette_start = self.palette.len();
-        self.looks.push(Look { pattern, choice: Choice::Plain, per_m: 0.0, palette_start });
+        let weight = weight(colour);
+        self.looks.push(Look { pattern, weight, weights: [0; 2], choice: Choice::Plain, per_m: 0.0, palette_start });
+        self.widen(colour);
+    }
+
+    fn widen(&mut self, colour: [u8; 3]) {
+        let [red, green, blue] = colour;
+        self.range.0 = self.range.0.min(red).min(green).min(blue);
+        self.range.1 = self.range.1.max(red).max(green).max(blue);
+    }
+
+    fn push_colour(&mut self, colour: [u8; 3]) {
+        let [red, green, blue] = colour;
+        self.palette.push([red, green, blue, 0]);
+        self.widen(colour);
     }
 
     /// Adds the look of a material on a surface with the unit normal `normal`.
@@ -92,18 +138,18 @@ impl Looks {
                 (Choice::Noise(amplitude as f32), amplitude, scale_m)
             }
         };
-        if let Some(look) = self.looks.last_mut() {
-            (look.choice, look.per_m) = (choice, (1.0 / scale_m) as f32);
-        }
-        let word = |by: f64| {
-            let [red, green, blue] = lighter(by);
-            [red, green, blue, 0]
-        };
         if let Choice::Noise(amplitude) = choice {
             let most = amplitude as i32;
-            self.palette.extend((-most..=most).map(|by| word(f64::from(by))));
+            (-most..=most).for_each(|by| self.push_colour(lighter(f64::from(by))));
         } else {
-            self.palette.extend([word(amplitude), word(-amplitude)]);
+            [amplitude, -amplitude].into_iter().for_each(|by| self.push_colour(lighter(by)));
+        }
+        if let Some(look) = self.looks.last_mut() {
+            (look.choice, look.per_m) = (choice, (1.0 / scale_m) as f32);
+            let of = |index: usize| {
+                self.palette.get(look.palette_start + index).map_or(0, |[r, g, b, _]| weight([*r, *g, *b]))
+            };
+            look.weights = [of(0), of(1).wrapping_sub(of(0))];
         }
     }
 }
@@ -112,6 +158,7 @@ impl Looks {
 const TO_WHOLE: f32 = 12_582_912.0;
 
 /// The whole number below `value`, as bits and as a number. Only its low bits mean something far from the origin.
+#[inline(always)]
 fn floor(value: f32) -> (u32, f32) {
     let shifted = (value - 0.5) + TO_WHOLE;
     (shifted.to_bits(), shifted - TO_WHOLE)
@@ -119,11 +166,13 @@ fn floor(value: f32) -> (u32, f32) {
 
 impl Look {
     /// Whether one colour is all there is.
+    #[inline(always)]
     pub(super) fn is_plain(&self) -> bool {
         self.choice == Choice::Plain
     }
 
     /// The colour of each place: its index in this look's palette. Places in metres along the surface's two axes.
+    #[inline(always)]
     pub(super) fn choose(&self, along: &[f32; BATCH], across: &[f32; BATCH], indices: &mut [u8; BATCH]) {
         match self.choice {
             Choice::Plain => *indices = [0; BATCH],
@@ -142,6 +191,7 @@ impl Look {
     }
 
     /// Value noise: the lattice's values, blended smoothly.
+    #[inline(always)]
     fn noise(&self, amplitude: f32, along: &[f32; BATCH], across: &[f32; BATCH], indices: &mut [u8; BATCH]) {
         let lattice = lattice();
         let mut cells = [0_u32; BATCH];
@@ -155,7 +205,7 @@ impl Look {
         }
         let mut corners = [0_u32; BATCH];
         for (corners, cell) in corners.iter_mut().zip(cells) {
-            *corners = lattice[cell as usize];
+            *corners = lattice[cell as usize % (LATTICE * LATTICE)];
         }
         for place in 0..BATCH {
             let (right, up) = (shares[0][place], shares[1][place]);
@@ -171,6 +221,7 @@ impl Look {
 }
 
 /// 3 t^2 - 2 t^3: level at both ends.
+#[inline(always)]
 fn smooth(share: f32) -> f32 {
     share * share * (3.0 - 2.0 * share)
 }

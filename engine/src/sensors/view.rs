@@ -11,6 +11,7 @@ pub(super) const NEAR_M: f64 = 0.02;
 pub(super) struct Affine(pub(super) [f64; 3]);
 
 impl Affine {
+    #[inline(always)]
     pub(super) fn at(&self, x: f64, y: f64) -> f64 {
         self.0[0] * x + self.0[1] * y + self.0[2]
     }

@@ -100,10 +100,9 @@ pub fn self_test(camera: &mut Camera, world_from_robot: &Isometry3, moving: &[So
 }
 
 fn is_blank(image: &Image) -> bool {
-    let Some(first) = image.pixels.get(..3) else {
-        return true;
-    };
-    image.pixels.chunks_exact(3).all(|pixel| pixel == first)
+    let mut pixels = image.pixels.chunks_exact(image.format.channels());
+    let first = pixels.next();
+    pixels.all(|pixel| Some(pixel) == first)
 }
 
 fn blank_error(message: String) -> Diagnostic {
@@ -124,7 +123,7 @@ mod tests {
     use super::*;
 
     fn image(pixels: [u8; 6]) -> Image {
-        Image { width_px: 2, height_px: 1, pixels: pixels.to_vec() }
+        Image { pixels: pixels.to_vec(), ..Image::new(2, 1) }
     }
 
     #[test]

@@ -11,6 +11,7 @@
 //! ```
 
 use crate::settings::GridSettings;
+use dispatch::{Processor, compiled_for_each_processor};
 
 /// The most states that a grid may have.
 pub const MAX_STATES: usize = 1 << 19;
@@ -31,6 +32,9 @@ pub struct Grid {
     counts: Vec<u32>,
     occupied: Vec<bool>,
     states: usize,
+    /// Set pixels of each pixel column, of some rows.
+    sums: Vec<u8>,
+    processor: Processor,
 }
 
 /// Why a grid cannot be: too many states, or more cells than pixels.
@@ -73,6 +77,8 @@ impl Grid {
             counts: vec![0; rows * columns],
             occupied: vec![false; rows * columns],
             states,
+            sums: vec![0; width_px],
+            processor: Processor::best(),
         })
     }
 
@@ -107,9 +113,12 @@ impl Grid {
         self.counts.fill(0);
         for (row, edges) in self.row_edges.windows(2).enumerate() {
             let counts = &mut self.counts[row * self.columns..(row + 1) * self.columns];
-            for line in mask[edges[0] * self.width_px..edges[1] * self.width_px].chunks_exact(self.width_px) {
+            let band = &mask[edges[0] * self.width_px..edges[1] * self.width_px];
+            // A sum of up to 255 pixels fits a byte.
+            for part in band.chunks(255 * self.width_px) {
+                add_rows(self.processor, part, &mut self.sums);
                 for (count, edges) in counts.iter_mut().zip(self.column_edges.windows(2)) {
-                    *count += foreground(&line[edges[0]..edges[1]]);
+                    *count += self.sums[edges[0]..edges[1]].iter().map(|sum| u32::from(*sum)).sum::<u32>();
                 }
             }
         }
@@ -169,10 +178,27 @@ impl Grid {
     }
 }
 
-/// How many bytes of a mask's row are set.
-fn foreground(row: &[u8]) -> u32 {
-    // Sums of up to 255 ones fit a byte, and bytes add in vectors.
-    row.chunks(255).map(|part| u32::from(part.iter().map(|pixel| pixel & 1).sum::<u8>())).sum()
+compiled_for_each_processor! {
+    /// Counts the set pixels of each column over at most 255 rows, each as wide as `sums`.
+    fn add_rows<'a>(rows: &'a [u8], sums: &'a mut [u8]) {
+        sums.fill(0);
+        let width = sums.len();
+        let fours = rows.chunks_exact(4 * width);
+        let rest = fours.remainder();
+        for four in fours {
+            let (upper, lower) = four.split_at(2 * width);
+            let ((first, second), (third, fourth)) = (upper.split_at(width), lower.split_at(width));
+            let pixels = first.iter().zip(second).zip(third.iter().zip(fourth));
+            for (sum, ((first, second), (third, fourth))) in sums.iter_mut().zip(pixels) {
+                *sum += (first & 1) + (second & 1) + (third & 1) + (fourth & 1);
+            }
+        }
+        for row in rest.chunks_exact(width) {
+            for (sum, pixel) in sums.iter_mut().zip(row) {
+                *sum += pixel & 1;
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -260,6 +286,29 @@ mod tests {
     fn sizes_that_do_not_divide_share_the_pixels_out() {
         let grid = Grid::new(&GridSettings { rows: 3, columns: 3, occupied: 0.1, fill: true }, 7, 5).unwrap();
         assert_eq!((0..9).map(|cell| grid.area_px(cell)).sum::<usize>(), 35);
+    }
+
+    #[test]
+    fn every_compilation_counts_the_set_pixels_of_each_column() {
+        let mut random = crate::random::Random::new(1, crate::random::Stream::Test);
+        for width in 1..150 {
+            let rows = 1 + random.below(255) as usize;
+            let mask: Vec<u8> = (0..width * rows).map(|_| if random.below(5) == 0 { 0 } else { 255 }).collect();
+            let set = |column: usize| mask.chunks_exact(width).filter(|row| row[column] == 255).count() as u8;
+            let wanted: Vec<u8> = (0..width).map(set).collect();
+            for processor in Processor::all() {
+                let mut sums = vec![9; width];
+                add_rows(processor, &mask, &mut sums);
+                assert_eq!(sums, wanted, "{}", processor.name());
+            }
+        }
+    }
+
+    #[test]
+    fn cells_of_more_than_255_rows_are_counted_in_full() {
+        let mut grid = Grid::new(&GridSettings { rows: 1, columns: 2, occupied: 0.1, fill: true }, 3, 600).unwrap();
+        grid.encode(&[255, 255, 0].repeat(600));
+        assert_eq!(grid.counts(), [600, 600]);
     }
 
     #[test]

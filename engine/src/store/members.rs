@@ -16,11 +16,11 @@ pub fn load_members(plan: &Plan) -> Result<Vec<Member>> {
     policies.map(|(index, policy)| member(plan, index, &find(plan, index, &policy.path)?)).collect()
 }
 
-/// The same from the texts that a stored run holds.
+/// The same from texts that are at hand: those that a stored run or a pack holds.
 ///
 /// # Errors
 /// As [`load_members`], and if there are not as many texts as policies.
-pub(super) fn stored_members(plan: &Plan, texts: Vec<SourceText>) -> Result<Vec<Member>> {
+pub fn members_from_texts(plan: &Plan, texts: Vec<SourceText>) -> Result<Vec<Member>> {
     if texts.len() != plan.settings.policies.len() {
         let message = format!("the run holds {} of {} policies", texts.len(), plan.settings.policies.len());
         return Diagnostic::new(Kind::State, "E-RUN-FILE", message).help("run the behaviour again").into();

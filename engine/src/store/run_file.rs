@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use toml::Table;
 
-use super::members::stored_members;
+use super::members::members_from_texts;
 use super::{policy_from_toml, read_stored, toml_error};
 use crate::diagnostic::{Diagnostic, Kind, Result, SourceText, printable};
 use crate::experiment::{Member, Plan};
@@ -198,7 +198,7 @@ impl StoredRun {
             Decider::Learned(policy_from_toml(&policy, &plan.settings, states)?)
         } else {
             let texts = file.policy.iter().map(|policy| policy.check(&source)).collect::<Result<Vec<_>>>()?;
-            Decider::Combined(stored_members(&plan, texts)?)
+            Decider::Combined(members_from_texts(&plan, texts)?)
         };
         Ok(Self { plan, seed: file.seed, decider })
     }

@@ -12,7 +12,7 @@ const DESCRIPTOR: Descriptor = Descriptor {
     version: env!("CARGO_PKG_VERSION"),
     licence: "MIT",
     purpose: "Marks the pixels that differ in brightness from the one to the left or the one above.",
-    reads: &[Format::Rgb, Format::Grey],
+    reads: &[Format::Grey, Format::Rgb],
     writes: Format::Mask,
     parameters: &[Parameter {
         name: "level",

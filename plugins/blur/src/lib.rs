@@ -23,7 +23,7 @@ const DESCRIPTOR: Descriptor = Descriptor {
     version: env!("CARGO_PKG_VERSION"),
     licence: "MIT OR Apache-2.0",
     purpose: "Smooths brightness, so that noise and fine texture vanish (binomial weights).",
-    reads: &[Format::Rgb, Format::Grey],
+    reads: &[Format::Grey, Format::Rgb],
     writes: Format::Grey,
     parameters: &[Parameter {
         name: "radius_px",

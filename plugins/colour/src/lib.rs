@@ -10,6 +10,7 @@
 
 #![deny(unsafe_code)]
 
+use dispatch::{Processor, compiled_for_each_processor};
 use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, ParameterKind, Plugin};
 
 /// The filter, ready to be registered.
@@ -67,14 +68,16 @@ const DESCRIPTOR: Descriptor = Descriptor {
 };
 
 /// Hue is counted in 1/256 of a sixth of the circle: 0 to 1535.
-const CIRCLE: i32 = 6 * 256;
+const CIRCLE: f32 = 6.0 * 256.0;
 
+/// Whole numbers.
 struct Colour {
-    hue: i32,
-    width: i32,
+    hue: f32,
+    width: f32,
     /// Saturation in 1/256.
-    saturation: i32,
-    dark: i32,
+    saturation: f32,
+    dark: f32,
+    processor: Processor,
 }
 
 fn create(values: &[f64]) -> Result<Box<dyn Filter>, FilterError> {
@@ -82,31 +85,47 @@ fn create(values: &[f64]) -> Result<Box<dyn Filter>, FilterError> {
         [hue_deg, width_deg, saturation, dark] => (hue_deg, width_deg, saturation, dark),
         _ => return Err(FilterError(format!("colour takes 4 parameters, not {}", values.len()))),
     };
-    let steps = |degrees: f64| (degrees * f64::from(CIRCLE) / 360.0).round() as i32;
+    let steps = |degrees: f64| (degrees * f64::from(CIRCLE) / 360.0).round() as f32;
     Ok(Box::new(Colour {
         hue: steps(*hue_deg) % CIRCLE,
         width: steps(*width_deg),
-        saturation: (saturation * 256.0).round() as i32,
-        dark: dark.round() as i32,
+        saturation: (saturation * 256.0).round() as f32,
+        dark: dark.round() as f32,
+        processor: Processor::best(),
     }))
 }
 
 impl Colour {
-    fn matches(&self, red: i32, green: i32, blue: i32) -> bool {
-        let max = red.max(green).max(blue);
-        let spread = max - red.min(green).min(blue);
-        if max < self.dark || spread * 256 < self.saturation * max || spread == 0 {
-            return false;
-        }
-        let hue = if max == red {
-            (green - blue) * 256 / spread
+    /// Without a branch, so that many pixels are compared at once. Every number here is whole, and small enough to be
+    /// exact; so is the quotient when cut off: it is at most 256, and if not whole, at least 1/255 away from a whole one.
+    #[inline(always)]
+    fn matches(&self, [red, green, blue]: [f32; 3]) -> bool {
+        let greater = |a: f32, b: f32| if a > b { a } else { b };
+        let max = greater(greater(red, green), blue);
+        let spread = max + greater(greater(-red, -green), -blue);
+        let (base, difference) = if max == red {
+            (0.0, green - blue)
         } else if max == green {
-            512 + (blue - red) * 256 / spread
+            (512.0, blue - red)
         } else {
-            1024 + (red - green) * 256 / spread
+            (1024.0, red - green)
         };
-        let apart = (hue - self.hue).rem_euclid(CIRCLE);
-        apart.min(CIRCLE - apart) <= self.width
+        let hue = base + (difference * 256.0 / spread).trunc();
+        let apart = (hue - self.hue).abs();
+        let other_way = (CIRCLE - apart).abs();
+        // Grey has no hue: it is no number, and near to nothing.
+        let near = (apart <= self.width) | (other_way <= self.width);
+        near & (max >= self.dark) & (spread * 256.0 >= self.saturation * max)
+    }
+}
+
+compiled_for_each_processor! {
+    /// Marks the pixels that match.
+    fn mark<'a>(colour: &'a Colour, pixels: &'a [u8], out: &'a mut [u8]) {
+        for (pixel, out) in pixels.chunks_exact(3).zip(out) {
+            let matches = colour.matches([pixel[0], pixel[1], pixel[2]].map(f32::from));
+            *out = if matches { 255 } else { 0 };
+        }
     }
 }
 
@@ -116,10 +135,7 @@ impl Filter for Colour {
         if input.format() != Format::Rgb {
             return Err(FilterError("colour reads colour frames only".to_owned()));
         }
-        for (pixel, out) in input.pixels().chunks_exact(3).zip(output.pixels()) {
-            let matches = self.matches(i32::from(pixel[0]), i32::from(pixel[1]), i32::from(pixel[2]));
-            *out = if matches { 255 } else { 0 };
-        }
+        mark(self.processor, self, input.pixels(), output.pixels());
         Ok(())
     }
 }
@@ -153,6 +169,51 @@ mod tests {
     fn hues_on_both_sides_of_zero_count_as_red() {
         // (200, 40, 0) has a hue of 12 degrees, (200, 0, 40) of 348.
         assert_eq!(mask(&RED, &[200, 40, 0, 200, 0, 40]), [255, 255]);
+    }
+
+    /// The definition in whole numbers.
+    fn is_marked([hue, width, saturation, dark]: [i32; 4], [red, green, blue]: [i32; 3]) -> bool {
+        let max = red.max(green).max(blue);
+        let spread = max - red.min(green).min(blue);
+        if max < dark || spread * 256 < saturation * max || spread == 0 {
+            return false;
+        }
+        let found = if max == red {
+            (green - blue) * 256 / spread
+        } else if max == green {
+            512 + (blue - red) * 256 / spread
+        } else {
+            1024 + (red - green) * 256 / spread
+        };
+        let apart = (found - hue).rem_euclid(1536);
+        apart.min(1536 - apart) <= width
+    }
+
+    #[test]
+    fn every_compilation_marks_the_pixels_of_the_definition() {
+        let mut number = 1_u64;
+        let mut next = |below: u64| {
+            number = number.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ((number >> 33) % below) as i32
+        };
+        for _ in 0..300 {
+            let [hue, width] = [next(1536), next(768)];
+            let [saturation, dark] = [3 + next(254), 1 + next(100)];
+            // Few different levels, so that many hues lie on the very edge.
+            let levels = 2 + next(254) as u64;
+            let pixels: Vec<u8> = (0..3 * 500).map(|_| next(levels) as u8).collect();
+            let wanted: Vec<u8> = pixels
+                .chunks_exact(3)
+                .map(|pixel| [pixel[0], pixel[1], pixel[2]].map(i32::from))
+                .map(|pixel| if is_marked([hue, width, saturation, dark], pixel) { 255 } else { 0 })
+                .collect();
+            let [hue, width, saturation, dark] = [hue, width, saturation, dark].map(|number| number as f32);
+            for processor in Processor::all() {
+                let mut out = vec![7; 500];
+                mark(processor, &Colour { hue, width, saturation, dark, processor }, &pixels, &mut out);
+                assert_eq!(out, wanted, "{}", processor.name());
+            }
+        }
     }
 
     #[test]

@@ -15,6 +15,9 @@ pub const PLUGIN_SYMBOL: &str = "engine_filter";
 /// Bytes of every message buffer, the ending 0 included.
 pub const MESSAGE_BYTES: usize = 256;
 
+/// A bit of [`RawPlugin::reads`]: of colour the filter sees the brightness alone, and so likes grey frames best.
+pub const BRIGHTNESS: u32 = 8;
+
 /// It worked.
 pub const OK: i32 = 0;
 /// It did not; the message says why.

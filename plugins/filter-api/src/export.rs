@@ -7,7 +7,9 @@ use std::ffi::c_void;
 use std::os::raw::c_char;
 use std::panic::{catch_unwind, AssertUnwindSafe};
 
-use crate::abi::{RawCreate, RawFrame, RawParameter, RawPlugin, RawText, ABI_VERSION, ERROR, MESSAGE_BYTES, OK, PANIC};
+use crate::abi::{
+    RawCreate, RawFrame, RawParameter, RawPlugin, RawText, ABI_VERSION, BRIGHTNESS, ERROR, MESSAGE_BYTES, OK, PANIC,
+};
 use crate::{Filter, FilterError, Format, Frame, FrameMut, Parameter, Plugin};
 
 /// Makes a [`Plugin`] the one filter of a library: `filter_api::export!(PLUGIN);`, once for each library.
@@ -92,7 +94,7 @@ pub const fn parameters<const COUNT: usize>(parameters: &[Parameter]) -> [RawPar
 #[must_use]
 pub const fn plugin(plugin: &Plugin, parameters: *const RawParameter, create: RawCreate) -> RawPlugin {
     let descriptor = plugin.descriptor;
-    let mut reads = 0;
+    let mut reads = if likes_grey(descriptor.reads) { BRIGHTNESS } else { 0 };
     let mut index = 0;
     while index < descriptor.reads.len() {
         reads |= descriptor.reads[index].bit();
@@ -115,6 +117,11 @@ pub const fn plugin(plugin: &Plugin, parameters: *const RawParameter, create: Ra
         process: Some(process),
         destroy: Some(destroy),
     }
+}
+
+/// Whether grey stands first, and more than it: the order in which a filter likes its formats.
+const fn likes_grey(reads: &[Format]) -> bool {
+    reads.len() > 1 && matches!(reads[0], Format::Grey)
 }
 
 const fn text(text: &str) -> RawText {

@@ -26,7 +26,9 @@ pub struct Descriptor {
     pub licence: &'static str,
     /// One sentence: what it does.
     pub purpose: &'static str,
-    /// The formats that it reads; the host converts nothing.
+    /// The formats that it reads, the one that it likes best first; the host converts nothing. A filter that likes grey
+    /// best and reads colour too sees only its brightness: it gives the same for [`Frame::write_luma`] of a frame. The C
+    /// contract carries no order: a loaded filter gets colour if it reads it.
     pub reads: &'static [Format],
     /// The format that it writes.
     pub writes: Format,

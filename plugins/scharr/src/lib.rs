@@ -24,7 +24,7 @@ const DESCRIPTOR: Descriptor = Descriptor {
     version: env!("CARGO_PKG_VERSION"),
     licence: "MIT OR Apache-2.0",
     purpose: "Marks edges as sobel does, but weighs all directions more evenly (Scharr).",
-    reads: &[Format::Rgb, Format::Grey],
+    reads: &[Format::Grey, Format::Rgb],
     writes: Format::Mask,
     parameters: &[Parameter {
         name: "threshold",

@@ -9,6 +9,7 @@
 
 mod kernel;
 
+use dispatch::Processor;
 use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, ParameterKind, Plugin};
 
 /// The filter, ready to be registered.
@@ -23,7 +24,7 @@ const DESCRIPTOR: Descriptor = Descriptor {
     version: env!("CARGO_PKG_VERSION"),
     licence: "MIT OR Apache-2.0",
     purpose: "Marks edges: pixels where brightness changes fast (Sobel, Euclidean norm).",
-    reads: &[Format::Rgb, Format::Grey],
+    reads: &[Format::Grey, Format::Rgb],
     writes: Format::Mask,
     parameters: &[Parameter {
         name: "threshold",
@@ -39,44 +40,35 @@ const DESCRIPTOR: Descriptor = Descriptor {
 fn create(values: &[f64]) -> Result<Box<dyn Filter>, FilterError> {
     let threshold = values.first().copied().unwrap_or(60.0);
     // Gradients are whole numbers, so comparing with the next whole square is exact.
-    Ok(Box::new(Sobel { least_square: (threshold * threshold).ceil() as i32, luma: Vec::new() }))
+    let least_square = (threshold * threshold).ceil() as i32;
+    Ok(Box::new(Sobel { least_square, luma: Vec::new(), processor: Processor::best() }))
 }
 
 struct Sobel {
     /// The square of the norm from which a pixel is an edge.
     least_square: i32,
-    /// Brightness with one pixel of border on every side.
-    luma: Vec<i16>,
+    /// Brightness of a colour frame.
+    luma: Vec<u8>,
+    processor: Processor,
 }
 
 impl Filter for Sobel {
     fn process(&mut self, input: Frame<'_>, mut output: FrameMut<'_>) -> Result<(), FilterError> {
         output.check_same_size(&input)?;
-        if input.width_px() == 0 || input.height_px() == 0 {
+        let (width, height) = (input.width_px(), input.height_px());
+        if width == 0 || height == 0 {
             return Ok(());
         }
-        self.fill_luma(&input)?;
-        kernel::mark_edges(&self.luma, input.width_px(), self.least_square, output.pixels());
-        Ok(())
-    }
-}
-
-impl Sobel {
-    fn fill_luma(&mut self, input: &Frame<'_>) -> Result<(), FilterError> {
-        let (width, height, padded) = (input.width_px(), input.height_px(), input.width_px() + 2);
-        self.luma.resize(padded * (height + 2), 0);
-        let inside = &mut self.luma[padded..padded * (height + 1)];
-        match input.format() {
-            Format::Rgb => kernel::luma_of_colour(input.pixels(), width, inside),
-            Format::Grey => kernel::luma_of_grey(input.pixels(), width, inside),
+        let luma = match input.format() {
+            Format::Grey => input.pixels(),
+            Format::Rgb => {
+                self.luma.resize(width * height, 0);
+                kernel::luma_of_colour(self.processor, input.pixels(), &mut self.luma);
+                &self.luma
+            }
             Format::Mask => return Err(FilterError("sobel reads colour or grey frames, not a mask".to_owned())),
-        }
-        for row in inside.chunks_exact_mut(padded) {
-            row[0] = row[1];
-            row[width + 1] = row[width];
-        }
-        self.luma.copy_within(padded..2 * padded, 0);
-        self.luma.copy_within(height * padded..(height + 1) * padded, (height + 1) * padded);
+        };
+        kernel::mark_edges(self.processor, luma, width, self.least_square, output.pixels());
         Ok(())
     }
 }

@@ -18,7 +18,7 @@ const DESCRIPTOR: Descriptor = Descriptor {
     version: env!("CARGO_PKG_VERSION"),
     licence: "MIT OR Apache-2.0",
     purpose: "Marks the pixels that are bright enough, or with `invert` those that are not.",
-    reads: &[Format::Rgb, Format::Grey],
+    reads: &[Format::Grey, Format::Rgb],
     writes: Format::Mask,
     parameters: &[
         Parameter {

@@ -1,13 +1,15 @@
 //! A page for every code: what it means, why it is refused, what to do. `engine explain CODE` prints it.
 
 mod filters;
+mod packs;
 mod runs;
 mod scripts;
 mod watch;
 mod worlds;
 
 /// The pages, topic by topic.
-const TOPICS: &[&[(&str, &str)]] = &[scripts::PAGES, worlds::PAGES, filters::PAGES, runs::PAGES, watch::PAGES];
+const TOPICS: &[&[(&str, &str)]] =
+    &[scripts::PAGES, worlds::PAGES, filters::PAGES, runs::PAGES, packs::PAGES, watch::PAGES];
 
 /// The page of a code.
 #[must_use]

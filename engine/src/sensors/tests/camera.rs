@@ -7,6 +7,7 @@ use crate::sensors::observation::Image;
 use crate::sensors::{Camera, self_test};
 use crate::settings::{CameraSettings, Settings};
 use crate::world::scene::{Scene, SceneParts, Solid, Texture};
+use filter_api::Format;
 use std::sync::Arc;
 
 fn settings(width_px: u64, height_px: u64, field_of_view_deg: f64, tilt_deg: f64) -> CameraSettings {
@@ -185,6 +186,40 @@ fn one_seed_gives_one_image_and_another_seed_other_noise_alone() {
     let variance = differences.map(|difference| difference * difference).sum::<f64>() / one.pixels.len() as f64;
     // Two draws of deviation 2, each rounded: 2 * (4 + 1/12).
     assert!((variance - 8.17).abs() < 0.4, "{variance}");
+}
+
+#[test]
+fn a_grey_image_is_the_luma_of_the_image_in_colour() {
+    let mut random = Random::new(6, Stream::Test);
+    for round in 0..60 {
+        let mut parts = scene(random_solids(&mut random, 8), 9).parts().clone();
+        for (index, material) in parts.materials.iter_mut().enumerate() {
+            let (amplitude, scale_m) = (10.0, 0.2);
+            material.texture = [
+                Texture::Plain,
+                Texture::Noise { amplitude, scale_m },
+                Texture::Checker { amplitude, scale_m },
+                Texture::Stripes { amplitude, scale_m },
+            ][(index + round) % 4];
+            // In some rounds colours are so dark or so light that noise is cut off.
+            material.colour =
+                [[40, 120, 90], [3, 120, 90], [60, 255, 90]][round % 3].map(|byte| byte + index as u8 % 3);
+        }
+        parts.light.ambient = 1.0;
+        let scene = Arc::new(Scene::new(parts));
+        let mut settings = settings(97, 71, 120.0, 25.0);
+        settings.noise = [0.0, 2.0, 90.0][round / 3 % 3];
+        settings.lens = if round % 2 == 0 { "pinhole" } else { "fisheye" }.to_owned();
+        let (pose, movers) = (random_pose(&mut random), random_solids(&mut random, 2));
+        let mut camera = Camera::new(&scene, &settings, 3);
+        let (mut colour, mut grey) = (Image::new(0, 0), Image::of(Format::Grey, 0, 0));
+        camera.render(&pose, &movers, &mut colour);
+        camera.set_frames(0);
+        camera.render(&pose, &movers, &mut grey);
+        let mut luma = vec![0; 97 * 71];
+        colour.frame().unwrap().write_luma(&mut luma).unwrap();
+        assert!(grey.pixels == luma, "round {round}");
+    }
 }
 
 #[test]

@@ -1,0 +1,71 @@
+//! What colours are painted on: colour pixels, or weighted sums of colours that become brightness.
+//!
+//! A stretch may be painted too long, since what follows is painted afterwards; so every write has a fixed length.
+
+use super::texture::{Look, Looks, PATTERN_PX};
+use std::ops::Range;
+
+/// Something to paint on, pixels numbered row by row.
+pub(super) trait Canvas {
+    /// Paints pixels in the plain colour of a look, and perhaps some after them.
+    fn fill(&mut self, look: &Look, pixels: Range<usize>);
+
+    /// Paints pixels from number `first` on, each in a colour of the look's palette.
+    fn spots(&mut self, looks: &Looks, look: &Look, first: usize, indices: &[u8]);
+}
+
+/// Three bytes for each pixel.
+pub(super) struct Colours<'a>(pub(super) &'a mut [u8]);
+
+impl Canvas for Colours<'_> {
+    #[inline(always)]
+    fn fill(&mut self, look: &Look, pixels: Range<usize>) {
+        write_over(self.0, &look.pattern, 3 * pixels.start..3 * pixels.end);
+    }
+
+    #[inline(always)]
+    fn spots(&mut self, looks: &Looks, look: &Look, first: usize, indices: &[u8]) {
+        let palette = looks.palette(look);
+        for (place, &index) in indices.iter().enumerate() {
+            let byte = (first + place) * 3;
+            let colour = palette[usize::from(index)];
+            if let Some(pixel) = self.0.get_mut(byte..byte + 4) {
+                pixel.copy_from_slice(&colour);
+            } else if let Some(pixel) = self.0.get_mut(byte..byte + 3) {
+                pixel.copy_from_slice(&colour[..3]);
+            }
+        }
+    }
+}
+
+/// For each pixel the weighted sum of its channels, 256 times its luma.
+pub(super) struct Weights<'a>(pub(super) &'a mut [u16]);
+
+impl Canvas for Weights<'_> {
+    #[inline(always)]
+    fn fill(&mut self, look: &Look, pixels: Range<usize>) {
+        write_over(self.0, &[look.weight; 2 * PATTERN_PX], pixels);
+    }
+
+    #[inline(always)]
+    fn spots(&mut self, _: &Looks, look: &Look, first: usize, indices: &[u8]) {
+        let [start, step] = look.weights;
+        for (pixel, index) in self.0[first..first + indices.len()].iter_mut().zip(indices) {
+            *pixel = start.wrapping_add(step.wrapping_mul(u16::from(*index)));
+        }
+    }
+}
+
+/// Repeats `pattern` until `range` is covered.
+#[inline(always)]
+fn write_over<T: Copy, const LENGTH: usize>(memory: &mut [T], pattern: &[T; LENGTH], range: Range<usize>) {
+    let mut at = range.start;
+    while at < range.end {
+        if let Some(part) = memory.get_mut(at..).and_then(<[T]>::first_chunk_mut) {
+            *part = *pattern;
+        } else if let Some(part) = memory.get_mut(at..) {
+            part.copy_from_slice(&pattern[..part.len()]);
+        }
+        at += LENGTH;
+    }
+}

@@ -1,0 +1,19 @@
+/// Packs with filters of their own: granted, allowed, found.
+mod filters;
+/// Tars by hand, honest and hostile.
+mod forge;
+
+/// Archives that a reader could be fooled by, each refused with its error, through the library and the program.
+mod archives;
+/// From a new folder to an installed pack: every command in the order of its use.
+mod flow;
+/// A small pack with every byte flipped, every file deleted, every truncation; and seeded mutants.
+mod mutants;
+/// Packs that build on packs.
+mod needs;
+/// Push and pull, with a real registry where one is installed.
+mod places;
+/// Strangers' scripts in a pack: all of them end, and in a clear error.
+mod scripts;
+/// Keys, signatures, locks: who is refused, and what to type then.
+mod trust;
