@@ -28,6 +28,8 @@ mod filters;
 mod forms;
 /// Every step kept, and brought back by its actions.
 mod ledger;
+/// Seeded mistakes and what is found in them; scripts that ship; ways to cheat.
+mod lint;
 /// WebAssembly filters that loop, grow, trap, lie or are damaged.
 #[cfg(feature = "wasm")]
 mod modules;

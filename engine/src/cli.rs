@@ -1,5 +1,6 @@
 //! The command line: names, defaults and help, no logic.
 
+mod check;
 mod pack;
 mod recorded;
 mod watch;
@@ -8,6 +9,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+pub(crate) use check::CheckArguments;
 pub(crate) use pack::*;
 pub(crate) use recorded::{ExplainArguments, ReplayArguments, RescoreArguments};
 pub(crate) use watch::WatchArguments;
@@ -24,6 +26,8 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Learn a behaviour, test the frozen policy, draw the results
     Run(RunArguments),
+    /// Look a behaviour over before it is learned: mistakes, and ways to cheat its reward
+    Check(CheckArguments),
     /// Test a learned policy again, in the same or another world
     Test(TestArguments),
     /// Play a recorded run again and compare every step; with --verify, learn it again too
@@ -57,6 +61,7 @@ impl Command {
     pub(crate) fn wants_json(&self) -> bool {
         match self {
             Self::Run(arguments) => arguments.json,
+            Self::Check(arguments) => arguments.json,
             Self::Test(arguments) => arguments.json,
             Self::Replay(arguments) => arguments.json,
             Self::Explain(arguments) => arguments.json,
@@ -224,7 +229,7 @@ pub(crate) struct ReproduceArguments {
                         7 a stored run that does not fit."
 )]
 pub(crate) struct FilterArguments {
-    /// The behaviour's script, such as scripts/wall.rhai
+    /// The behaviour: a script such as scripts/wall.rhai, a .pack file, a pack's folder, or an installed pack's name
     pub(crate) behaviour: PathBuf,
     /// PNG or JPEG files, or folders of them; at most 64 MiB and 50 megapixels each
     #[arg(required = true)]

@@ -47,6 +47,18 @@ impl Kind {
     }
 }
 
+/// How bad it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Severity {
+    /// Nothing can be learned so.
+    Error,
+    /// Most likely not what is meant.
+    Warning,
+    /// Worth knowing; nothing is wrong.
+    Note,
+}
+
 /// A text file as the user wrote it, kept so that errors can show its lines.
 #[derive(Debug, Clone)]
 pub struct SourceText {

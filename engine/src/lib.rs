@@ -33,6 +33,8 @@ pub mod robot;
 
 pub mod experiment;
 
+pub mod lint;
+
 pub mod record;
 
 pub mod report;

@@ -30,6 +30,7 @@ fn main() -> ExitCode {
 fn run(command: &Command, console: &mut Console) -> Result<u8, ConsoleError> {
     match command {
         Command::Run(arguments) => commands::run::run(arguments, console),
+        Command::Check(arguments) => commands::check::run(arguments, console),
         Command::Test(arguments) => commands::test::run(arguments, console),
         Command::Replay(arguments) => commands::replay::run(arguments, console),
         Command::Explain(arguments) => commands::explain::run(arguments, console),

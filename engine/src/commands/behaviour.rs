@@ -23,12 +23,25 @@ pub(super) fn open(
     filters: &FilterSources,
     allow_unsigned: bool,
 ) -> Result<Runnable> {
+    let runnable = open_to_look(argument, overrides, filters, allow_unsigned)?;
+    if !runnable.members.is_empty() || runnable.plan.settings.policies.is_empty() {
+        return Ok(runnable);
+    }
+    Ok(Runnable { members: load_members(&runnable.plan)?, ..runnable })
+}
+
+/// The same without the policies that a script combines, which may not have been learned yet.
+pub(super) fn open_to_look(
+    argument: &Path,
+    overrides: &Overrides,
+    filters: &FilterSources,
+    allow_unsigned: bool,
+) -> Result<Runnable> {
     if let Some((pack, depends)) = open_pack(argument, allow_unsigned)? {
         return pack.plan(&depends, overrides, sources(filters)?);
     }
     let plan = Plan::with_filters(Arc::new(Behaviour::load(argument)?), overrides, catalogue(filters)?)?;
-    let members = if plan.settings.policies.is_empty() { Vec::new() } else { load_members(&plan)? };
-    Ok(Runnable { plan, members, unpacked: None })
+    Ok(Runnable { plan, members: Vec::new(), unpacked: None })
 }
 
 /// The pack that an argument means, and what it builds on; nothing if it means something else.

@@ -7,16 +7,16 @@ use engine::diagnostic::{Diagnostic, Kind, Result, printable};
 use engine::experiment::{Overrides, Plan};
 use engine::filter::{Catalogue, Chain};
 use engine::learner::Policy;
+use engine::pack::Runnable;
 use engine::report::{FrameData, FramePanel, Picture, frame};
-use engine::reward::Behaviour;
 use engine::sensors::observation::Image;
 use engine::sensors::{load_photograph, photograph_files};
 use engine::settings::Settings;
 use engine::state::Grid;
 use engine::store::{Decider, StoredRun};
 
+use super::behaviour::open_to_look;
 use super::folder::create;
-use super::sources::catalogue;
 use crate::cli::FilterArguments;
 use crate::console::{Console, ConsoleError};
 
@@ -37,9 +37,10 @@ struct Seen {
 }
 
 pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
-    let behaviour = Arc::new(Behaviour::load(&arguments.behaviour)?);
     let overrides = Overrides { world: None, steps: None, test_steps: None, set: arguments.set.clone() };
-    let plan = Plan::with_filters(behaviour, &overrides, catalogue(&arguments.filters)?)?;
+    // A pack's filters stand in a folder that lives as long as it does.
+    let Runnable { plan, unpacked: _unpacked, .. } =
+        open_to_look(&arguments.behaviour, &overrides, &arguments.filters, false)?;
     if !plan.settings.policies.is_empty() {
         let message = format!("'{}' combines policies, and each sees with filters of its own", plan.behaviour.name());
         let error = Diagnostic::new(Kind::Usage, "E-POLICY", message).help("give the script of one of its policies");

@@ -2,6 +2,7 @@
 
 mod behaviour;
 pub(crate) mod bench;
+pub(crate) mod check;
 mod combine;
 pub(crate) mod explain;
 pub(crate) mod filter;

@@ -2,15 +2,26 @@
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 
-use super::Diagnostic;
+use super::{Diagnostic, Severity};
 
 impl Diagnostic {
     /// The error as it is shown on a terminal: message, place with a caret, help.
     #[must_use]
     pub fn render(&self, colour: bool) -> String {
+        self.render_as(Severity::Error, colour)
+    }
+
+    /// The same as an error, a warning or a note.
+    #[must_use]
+    pub fn render_as(&self, severity: Severity, colour: bool) -> String {
         let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
         let path;
-        let mut group = Level::ERROR.primary_title(&self.message).id(self.code);
+        let level = match severity {
+            Severity::Error => Level::ERROR,
+            Severity::Warning => Level::WARNING,
+            Severity::Note => Level::NOTE,
+        };
+        let mut group = level.primary_title(&self.message).id(self.code);
         let mut report = Vec::new();
         if let Some(place) = &self.place {
             path = place.source.path.display().to_string();

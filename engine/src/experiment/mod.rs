@@ -36,6 +36,8 @@ pub use rescore::{Rescored, RuleChange, RuleScore, plan_with_rules_of, rescore};
 pub use seeds::in_parallel;
 pub use summary::{RuleTotal, Spread, Summary, TestFigures, learned_at};
 pub use tally::{Tally, WINDOW_STEPS, Window};
-pub use testing::{CombinedRun, Snapshot, TestRun, Watch, test, test_and_watch, test_combined, test_into};
+pub use testing::{
+    CombinedRun, Snapshot, TestRun, Watch, test, test_and_watch, test_choices, test_combined, test_into,
+};
 pub use trail::Trail;
 pub use truth::{Spells, Truth};

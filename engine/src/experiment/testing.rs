@@ -124,6 +124,20 @@ pub fn test_combined(
     Ok(CombinedRun { run, figures, disagreements })
 }
 
+/// Tests whatever chooses by the present state, as [`test_and_watch`] does.
+///
+/// # Errors
+/// As [`test()`].
+pub fn test_choices(
+    plan: &Plan,
+    seed: u64,
+    stop: &AtomicBool,
+    mut choose: impl FnMut(usize) -> usize,
+    watch: Watch<'_>,
+) -> Result<TestRun> {
+    drive(plan, Vec::new(), seed, stop, |states| choose(states[0]), watch)
+}
+
 /// What looks at every step of a test.
 pub type Watch<'a> = &'a mut dyn FnMut(&Cycle<SimulatedRobot>, &Step);
 

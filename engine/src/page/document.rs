@@ -57,7 +57,7 @@ pub struct Document {
     pub seeds: Vec<SeedView>,
     /// Moments with their pictures.
     pub shots: Vec<Shot>,
-    /// What a check of the script found.
+    /// What reading the script found; what trying it out found too, where that was done.
     pub findings: Vec<Finding>,
 }
 
@@ -115,6 +115,17 @@ pub struct Finding {
     pub line: Option<usize>,
     /// What to do.
     pub help: Option<String>,
+}
+
+impl From<&crate::lint::Finding> for Finding {
+    fn from(found: &crate::lint::Finding) -> Self {
+        Self {
+            code: found.code.to_owned(),
+            message: found.message.clone(),
+            line: Some(found.line),
+            help: Some(found.help.clone()).filter(|help| !help.is_empty()),
+        }
+    }
 }
 
 impl Document {
@@ -199,7 +210,7 @@ impl Document {
             settings: settings(plan),
             seeds: Vec::new(),
             shots: Vec::new(),
-            findings: Vec::new(),
+            findings: crate::lint::read(plan).iter().map(Finding::from).collect(),
         })
     }
 

@@ -5,6 +5,7 @@ use super::explain;
 use super::expression::Number;
 use super::fact_table::GROUPS;
 use super::judge::Judge;
+use super::outline::Outline;
 use super::readings::{self, Part};
 use super::rule::{Clause, Rule, RuleText};
 use super::setup::{self, Log, Places};
@@ -24,6 +25,7 @@ pub struct Behaviour {
     settings: Settings,
     places: Places,
     rules: Vec<RuleText>,
+    outline: Outline,
     loaded: Arc<Loaded>,
 }
 
@@ -85,8 +87,9 @@ impl Behaviour {
         let mut compiler = Compiler { constants: &constants, needs: &mut needs };
         let parts = |span| readings::function_parts(&code, &ast, span, &mut compiler);
         let reward_parts = reward.as_ref().map_or_else(Vec::new, parts);
+        let outline = Outline::new(&code, &ast, &constants, &rules);
         let loaded = Arc::new(Loaded { code, engine, ast, constants, rules, needs, reward, reward_parts, calibrate });
-        let behaviour = Self { name: name.to_owned(), settings, places, rules: texts, loaded };
+        let behaviour = Self { name: name.to_owned(), settings, places, rules: texts, outline, loaded };
         behaviour.check()?;
         Ok(behaviour)
     }
@@ -137,6 +140,12 @@ impl Behaviour {
     #[must_use]
     pub fn rules(&self) -> &[RuleText] {
         &self.rules
+    }
+
+    /// What it says, for whoever looks for mistakes in it.
+    #[must_use]
+    pub fn outline(&self) -> &Outline {
+        &self.outline
     }
 
     /// What a rule adds whenever it fires; nothing if that depends on the step, as with `fn reward`.

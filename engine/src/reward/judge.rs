@@ -152,6 +152,13 @@ impl Judge {
         self.present.parts(rule).iter().map(|part| part.evidence(self.present.inputs())).collect()
     }
 
+    /// Whether a rule's condition holds in the present facts; false where it fails.
+    #[must_use]
+    pub fn holds(&self, rule: usize) -> bool {
+        let rule = self.present.loaded.rules.get(rule);
+        rule.is_some_and(|rule| self.present.condition(rule).unwrap_or(false))
+    }
+
     /// For how many steps a rule's condition has held since it last fired, and how many it needs.
     #[must_use]
     pub fn held(&self, rule: usize) -> (u32, u32) {

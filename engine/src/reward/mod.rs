@@ -5,6 +5,7 @@
 //! small native trees; what is not understood is left to the interpreter, inside limits that are counted, never timed.
 
 mod behaviour;
+mod bodies;
 mod chain;
 mod compile;
 mod evaluate;
@@ -15,6 +16,7 @@ pub mod facts;
 mod functions;
 mod judge;
 mod names;
+mod outline;
 mod reach;
 mod readings;
 mod reference;
@@ -32,6 +34,7 @@ pub use fact_table::{CALLS, FACTS, Fact, FactCall, GROUPS, Getter, Reach, SECTOR
 pub use facts::Facts;
 pub use functions::{FUNCTIONS, Function};
 pub use judge::{Judge, Verdict};
+pub use outline::{BeamLoop, Compared, Comparison, Condition, Gathers, Outline, RuleOutline, UnusedName};
 pub use readings::{Evidence, FactRead};
 pub use reference::{definitions, reference};
 pub use rule::RuleText;

@@ -1,6 +1,7 @@
 //! A page for every code: what it means, why it is refused, what to do. `engine explain CODE` prints it.
 
 mod filters;
+mod lint;
 mod packs;
 mod runs;
 mod scripts;
@@ -9,7 +10,7 @@ mod worlds;
 
 /// The pages, topic by topic.
 const TOPICS: &[&[(&str, &str)]] =
-    &[scripts::PAGES, worlds::PAGES, filters::PAGES, runs::PAGES, packs::PAGES, watch::PAGES];
+    &[scripts::PAGES, worlds::PAGES, filters::PAGES, runs::PAGES, lint::PAGES, packs::PAGES, watch::PAGES];
 
 /// The page of a code.
 #[must_use]

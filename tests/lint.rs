@@ -1,0 +1,106 @@
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use engine::diagnostic::Result;
+use engine::experiment::{Overrides, Plan};
+use engine::lint::{self, Finding, Severity};
+use engine::reward::Behaviour;
+
+use crate::support::{Bench, root};
+
+fn scripts(folder: &str) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(root().join(folder)).unwrap().map(|entry| entry.unwrap().path());
+    let mut files: Vec<_> = entries.filter(|path| path.extension().is_some_and(|ending| ending == "rhai")).collect();
+    files.sort();
+    files
+}
+
+fn plan(path: &std::path::Path) -> Result<Plan> {
+    Plan::new(Arc::new(Behaviour::load(path)?), &Overrides::default())
+}
+
+/// Code and line of everything that is wrong with a script, not counting notes.
+fn found(path: &std::path::Path) -> Vec<(String, usize)> {
+    let plan = match plan(path) {
+        Ok(plan) => plan,
+        Err(error) => {
+            let place = error.place.as_ref().unwrap();
+            return vec![(error.code.to_owned(), place.source.position(place.span.start).0)];
+        }
+    };
+    let bad = |finding: &Finding| finding.severity != Severity::Note;
+    let findings = lint::check(&plan).unwrap().findings;
+    findings.iter().filter(|finding| bad(finding)).map(|f| (f.code.to_owned(), f.line)).collect()
+}
+
+#[test]
+fn every_seeded_mistake_is_found_in_its_line() {
+    let corpus = scripts("tests/fixtures/lint");
+    assert!(corpus.len() >= 40, "{}", corpus.len());
+    let mut missed = Vec::new();
+    for path in corpus {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let code = text.lines().next().unwrap().trim_start_matches("// ").split(':').next().unwrap().to_owned();
+        let line = 1 + text.lines().position(|line| line.ends_with("// <- here")).unwrap();
+        let found = found(&path);
+        if !found.contains(&(code.clone(), line)) {
+            missed.push(format!("{}: {code} in line {line}, found {found:?}", path.display()));
+        }
+    }
+    assert!(missed.is_empty(), "{}", missed.join("\n"));
+}
+
+#[test]
+fn nothing_is_found_in_scripts_that_ship() {
+    for path in scripts("scripts") {
+        assert_eq!(found(&path), [], "{}", path.display());
+    }
+}
+
+#[test]
+fn the_same_script_gives_the_same_report() {
+    let plan = plan(&root().join("scripts/corridor.rhai")).unwrap();
+    let report = || serde_json::to_string(&lint::check(&plan).unwrap()).unwrap();
+    assert_eq!(report(), report());
+}
+
+#[test]
+fn spinning_is_shown_to_get_nowhere_and_driving_to_get_along() {
+    let plan = plan(&root().join("scripts/corridor.rhai")).unwrap();
+    let exploits = lint::check(&plan).unwrap().exploits.unwrap();
+    let of = |name: &str| exploits.behaviours.iter().find(|exploit| exploit.behaviour.starts_with(name)).unwrap();
+    let (best, spin) = (of("best"), of("spin in place, left"));
+    assert!(!best.nowhere && best.net_m_per_s.unwrap().abs() > 0.1, "{best:?}");
+    assert!(spin.nowhere && spin.spinning > 0.9 && spin.reward_per_400 == 0.0, "{spin:?}");
+    assert!(exploits.coverage.states_seen > 10 && exploits.coverage.pairs_untried > 0);
+}
+
+#[test]
+fn the_program_says_how_it_went_by_its_exit_status() {
+    let bench = Bench::new();
+    let clean = "world(\"small\");\nrule \"too close\" when laser.nearest <= 0.25 => -1 then recover;\n";
+    bench.write("clean.rhai", clean);
+    bench.write("unit.rhai", clean.replace("0.25", "25"));
+    bench.write("broken.rhai", clean.replace("nearest", "neerest"));
+    let status = |script: &str| bench.engine(&["check", script, "--json"]);
+    let [clean, unit, broken] = ["clean.rhai", "unit.rhai", "broken.rhai"].map(status);
+    assert_eq!([&clean, &unit, &broken].map(|output| output.status.code().unwrap()), [0, 1, 3]);
+    let report: serde_json::Value = serde_json::from_slice(&unit.stdout).unwrap();
+    assert_eq!(report["findings"][0]["code"], "W-UNIT");
+    assert_eq!((&report["findings"][0]["line"], &report["findings"][0]["severity"]), (&2.into(), &"warning".into()));
+    assert!(report["findings"][0]["help"].as_str().unwrap().contains("25 cm are 0.25 m"));
+    let shown = bench.engine(&["check", "unit.rhai"]);
+    let shown = String::from_utf8(shown.stdout).unwrap();
+    assert!(shown.contains("warning[W-UNIT]") && shown.contains("^^^^"), "{shown}");
+}
+
+#[test]
+fn a_script_that_fails_in_a_step_is_an_error_in_its_line() {
+    let bench = Bench::new();
+    let text = "world(\"small\");\nfn reward(facts) {\n    let list = [1.0];\n    list[facts.time.step]\n}\n";
+    bench.write("fails.rhai", text);
+    let report = lint::check(&plan(&bench.path().join("fails.rhai")).unwrap()).unwrap();
+    let first = report.findings.iter().find(|finding| finding.severity == Severity::Error).unwrap();
+    assert_eq!((first.code, first.line), ("E-SCRIPT-RUN", 4));
+    assert!(report.exploits.is_none());
+}
