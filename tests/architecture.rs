@@ -20,15 +20,17 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("store", &["world", "filter", "state", "learner", "reward", "experiment"]),
     ("record", &["world", "experiment"]),
     ("report", &["world", "sensors", "experiment"]),
+    ("page", &["world", "sensors", "filter", "state", "learner", "reward", "experiment", "lint", "report"]),
+    ("watch", &["world", "filter", "reward", "experiment", "report", "page"]),
     ("reproduce", &["world", "learner", "reward", "robot", "experiment", "report"]),
     ("pack", &["world", "filter", "robot", "learner", "reward", "experiment", "store", "report"]),
 ];
 const SHARED: &[&str] = &["geometry", "random", "settings", "diagnostic"];
 /// Words of the clock and of chance, and who may say them.
 const ONLY_IN: &[(&str, &[&str])] = &[
-    // The room of filters only waits for a worker, with a deadline.
-    ("std::time::Duration", &["commands", "console", "filter"]),
-    ("Instant", &["commands", "console"]),
+    // The room of filters only waits for a worker, with a deadline; the live page for people and files.
+    ("std::time::Duration", &["commands", "console", "filter", "watch"]),
+    ("Instant", &["commands", "console", "watch"]),
     ("SystemTime", &["commands", "console"]),
     ("rhai::", &["reward"]),
     ("parry3d", &["world"]),

@@ -49,8 +49,7 @@ fn a_combination_is_tested_and_leaves_its_files() {
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect();
     names.sort();
-    let wanted =
-        "disagreements.csv frame.png frame.svg log.bin run.toml summary.json trajectories.png trajectories.svg";
+    let wanted = "disagreements.csv frame.png frame.svg log.bin report.html run.toml summary.json trajectories.png trajectories.svg";
     assert_eq!(names.join(" "), wanted);
 }
 

@@ -14,6 +14,8 @@ mod architecture;
 mod bad_input;
 /// What a bench measures and what it refuses.
 mod bench;
+/// The page in a real browser, from a file and live; pictures of it in `target/browser`.
+mod browser;
 /// Learned policies combined: files, figures, disagreements, mistakes.
 mod combine;
 /// The C header says what the Rust side of the filter contract says, on 64 and on 32 bits.
@@ -37,6 +39,8 @@ mod native;
 mod new_filter;
 /// Behaviour packs: made, signed, refused, installed, shared.
 mod pack;
+/// The page of a run as a file: its data, its size, its policy.
+mod page;
 /// Filters listed and photographs seen through them; what cannot be seen.
 mod photos;
 /// Recordings for viewers, read back by another reader.
@@ -49,3 +53,6 @@ mod reproduce;
 mod run_folder;
 /// Every script and world that ships can be used, and the reference pages are current.
 mod shipped;
+/// The live page by raw sockets: what is refused, what is told.
+#[cfg(feature = "serve")]
+mod watch;

@@ -12,7 +12,8 @@ fn a_run_leaves_the_files_that_the_manual_names() {
     let pictures = ["frame", "learning-curve", "policy", "trajectories"];
     let mut wanted: Vec<String> =
         pictures.iter().flat_map(|stem| [format!("{stem}.png"), format!("{stem}.svg")]).collect();
-    wanted.extend(["curve.csv", "log.bin", "policy.toml", "run.toml", "summary.json"].map(str::to_owned));
+    wanted
+        .extend(["curve.csv", "log.bin", "policy.toml", "report.html", "run.toml", "summary.json"].map(str::to_owned));
     wanted.sort();
     assert_eq!(names, wanted);
 }

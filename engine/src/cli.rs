@@ -3,6 +3,7 @@
 mod check;
 mod pack;
 mod recorded;
+mod watch;
 
 use std::path::PathBuf;
 
@@ -11,6 +12,7 @@ use clap::{Args, Parser, Subcommand};
 pub(crate) use check::CheckArguments;
 pub(crate) use pack::*;
 pub(crate) use recorded::{ExplainArguments, ReplayArguments, RescoreArguments};
+pub(crate) use watch::WatchArguments;
 
 /// Learns visual robot behaviours from reward scripts: learned, tested and drawn in about a second.
 #[derive(Debug, Parser)]
@@ -34,6 +36,8 @@ pub(crate) enum Command {
     Explain(ExplainArguments),
     /// Judge a recorded run by another script, and show which states change their action
     Rescore(RescoreArguments),
+    /// Learn again on every save, and show what changed and why on a page in the browser
+    Watch(WatchArguments),
     /// Measure steps per second, and where the time goes
     Bench(BenchArguments),
     /// Measure the paper's figures and claims again, and draw them beside one another
@@ -62,6 +66,7 @@ impl Command {
             Self::Replay(arguments) => arguments.json,
             Self::Explain(arguments) => arguments.json,
             Self::Rescore(arguments) => arguments.json,
+            Self::Watch(arguments) => arguments.json,
             Self::Bench(arguments) => arguments.json,
             Self::Reproduce(arguments) => arguments.json,
             Self::Filter(arguments) => arguments.json,
@@ -274,7 +279,7 @@ pub(crate) enum PluginsCommand {
 }
 
 /// Where filters come from, besides those linked in.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Filters from elsewhere")]
 pub(crate) struct FilterSources {
     /// A folder of native or WebAssembly filters; may be given again

@@ -39,8 +39,13 @@ pub mod record;
 
 pub mod report;
 
+pub mod page;
+
 pub mod reproduce;
 
 pub mod store;
+
+#[cfg(feature = "serve")]
+pub mod watch;
 
 pub mod pack;

@@ -35,6 +35,7 @@ fn run(command: &Command, console: &mut Console) -> Result<u8, ConsoleError> {
         Command::Replay(arguments) => commands::replay::run(arguments, console),
         Command::Explain(arguments) => commands::explain::run(arguments, console),
         Command::Rescore(arguments) => commands::rescore::run(arguments, console),
+        Command::Watch(arguments) => commands::watch::run(arguments, console),
         Command::Bench(arguments) => commands::bench::run(arguments, console),
         Command::Reproduce(arguments) => commands::reproduce::run(arguments, console),
         Command::Filter(arguments) => commands::filter::run(arguments, console),

@@ -8,6 +8,7 @@ use engine::diagnostic::{Diagnostic, Kind, Result};
 use engine::experiment::{
     CombinationFigures, CombinedRun, Cycle, Member, Plan, Spread, Step, Summary, in_parallel, test_combined,
 };
+use engine::page::SeedData;
 use engine::report::{disagreements_csv, write_atomic};
 use engine::robot::SimulatedRobot;
 use engine::store::{RunLog, run_to_toml};
@@ -85,7 +86,11 @@ fn write_seed(folder: &Path, plan: &Plan, members: &[Member], result: &SeedResul
     write_atomic(&folder.join("disagreements.csv"), table.as_bytes())?;
     let title = format!("{} in {}, seed {}", plan.behaviour.name(), plan.layout.name, result.summary.seed);
     draw_trails(folder, plan, &title, &[("test: first 800 steps", &result.tested.run.trail)])?;
-    draw_frame(folder, plan, &result.tested.run)
+    draw_frame(folder, plan, &result.tested.run)?;
+    let test = Some(&result.summary.test);
+    let (learning, tested) = (&result.log.learning, &result.log.test);
+    let data = SeedData { seed: result.summary.seed, tally: None, policy: None, test, learning, tested };
+    super::page::write(folder, plan, &[data])
 }
 
 fn print_one(console: &mut Console, result: &SeedResult) -> std::result::Result<(), ConsoleError> {

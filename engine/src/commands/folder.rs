@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::page::write_page;
 use engine::diagnostic::{Diagnostic, Kind, Result};
 use engine::experiment::{CertaintyGrid, Learned, Member, Plan, Spread, Summary, TestRun, Trail, WINDOW_STEPS};
 use engine::geometry::Point2;
@@ -61,7 +62,8 @@ impl RunFolder {
         let [result] = results else { return self.write_many(plan, results) };
         write_seed(&self.path, plan, result)?;
         draw_curve(&self.path, plan, &[result])?;
-        draw_seed(&self.path, plan, result)
+        draw_seed(&self.path, plan, result)?;
+        write_page(&self.path, plan, std::slice::from_ref(result))
     }
 
     fn write_many(&self, plan: &Plan, results: &[SeedResult]) -> Result<()> {
@@ -78,9 +80,10 @@ impl RunFolder {
         let worst =
             results.iter().max_by(|a, b| a.summary.test.failures_per_1000.total_cmp(&b.summary.test.failures_per_1000));
         match worst {
-            Some(worst) => draw_seed(&self.path.join(worst.summary.seed.to_string()), plan, worst),
-            None => Ok(()),
+            Some(worst) => draw_seed(&self.path.join(worst.summary.seed.to_string()), plan, worst)?,
+            None => return Ok(()),
         }
+        write_page(&self.path, plan, results)
     }
 }
 

@@ -34,9 +34,11 @@ pub use curve::{CurveData, learning_curve};
 pub use disagreements::disagreements_csv;
 pub use frame::{FrameData, FramePanel, frame, snapshot_frame};
 pub use growth::{GrowthGroup, growth};
+pub(crate) use plan::holds;
 pub use policy::{PolicyData, PolicyState, policy};
 pub use policy_diff::{PolicyDiffData, StateChange, policy_diff};
 pub use trajectory::{TrajectoryData, trajectories};
+pub(crate) use vector::base64;
 
 /// One picture in two forms.
 #[derive(Debug, Clone, PartialEq, Eq)]

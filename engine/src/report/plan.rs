@@ -112,7 +112,7 @@ fn closed(mut outline: Vec<Spot>) -> Vec<Spot> {
 }
 
 /// Whether a robot at a place of the floor plan can stand on the solid.
-fn holds(solid: &Solid, at: [f64; 2]) -> bool {
+pub(crate) fn holds(solid: &Solid, at: [f64; 2]) -> bool {
     let (x, y) = (at[0] - solid.centre.x, at[1] - solid.centre.y);
     let half = solid.shape.half_extents();
     if 2.0 * half.x.min(half.y) < LEAST_PLATFORM_M {

@@ -5,11 +5,12 @@ mod lint;
 mod packs;
 mod runs;
 mod scripts;
+mod watch;
 mod worlds;
 
 /// The pages, topic by topic.
 const TOPICS: &[&[(&str, &str)]] =
-    &[scripts::PAGES, worlds::PAGES, filters::PAGES, runs::PAGES, lint::PAGES, packs::PAGES];
+    &[scripts::PAGES, worlds::PAGES, filters::PAGES, runs::PAGES, lint::PAGES, packs::PAGES, watch::PAGES];
 
 /// The page of a code.
 #[must_use]

@@ -1,0 +1,55 @@
+//! The command line of `engine watch`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{FilterSources, count, seed};
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "The page is served on this computer only, at an address with a secret; nobody else can open it. \
+                        A script that is saved with a mistake ends nothing: the page shows the error until the next save.\n\
+                        Exit status: 0 ended with Ctrl-C; 2 usage; 3 bad script to begin with; 4 no free port; \
+                        5 refused for trust; 6 files and disk."
+)]
+// Without the feature nothing reads them.
+#[cfg_attr(not(feature = "serve"), allow(dead_code))]
+pub(crate) struct WatchArguments {
+    /// The behaviour's script, such as scripts/wall.rhai
+    pub(crate) behaviour: PathBuf,
+    /// The first seed
+    #[arg(long, default_value = "1", value_parser = seed, allow_hyphen_values = true)]
+    pub(crate) seed: u64,
+    /// How many seeds to learn on each save, from --seed on
+    #[arg(long, default_value = "30", value_parser = seeds, allow_hyphen_values = true, value_name = "N")]
+    pub(crate) seeds: u64,
+    /// How many threads to use; without it, one for each core
+    #[arg(long, value_parser = count, allow_hyphen_values = true, value_name = "N")]
+    pub(crate) threads: Option<u64>,
+    /// How many steps to learn; without it, what the script says
+    #[arg(long, value_parser = count, allow_hyphen_values = true, value_name = "N")]
+    pub(crate) steps: Option<u64>,
+    /// Another world: its name, or the path of a world file
+    #[arg(long)]
+    pub(crate) world: Option<String>,
+    /// Change a setting of the script, such as camera.tilt_deg=40; may be given again
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// The port of the page; the next free one if it is taken, any for 0
+    #[arg(long, default_value = "8400", value_name = "N")]
+    pub(crate) port: u16,
+    /// Do not open the browser
+    #[arg(long)]
+    pub(crate) no_open: bool,
+    /// Print the address as JSON on standard output, and nothing else there
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) filters: FilterSources,
+}
+
+/// All seeds stay in memory with every step.
+fn seeds(text: &str) -> Result<u64, String> {
+    count(text).ok().filter(|seeds| *seeds <= 300).ok_or_else(|| "write a whole number from 1 to 300".to_owned())
+}

@@ -1,0 +1,30 @@
+//! The pages about the live page.
+
+/// Each code with its page, in the order of the alphabet.
+pub(super) const PAGES: &[(&str, &str)] = &[
+    (
+        "E-WATCH-FEATURE",
+        "This program was built without the live page, which needs a web server inside.\n\
+      Build it in: cargo build --release --features serve. A run's report.html is the same page and needs none.",
+    ),
+    (
+        "E-WATCH-FILES",
+        "The system cannot tell when the files of the behaviour are saved.\n\
+      Mostly too many files are watched already by other programs: close one, or raise fs.inotify.max_user_watches.",
+    ),
+    (
+        "E-WATCH-POLICIES",
+        "The script combines learned policies, so there is nothing to learn again when it is saved.\n\
+      Watch one of the behaviours whose policies it names, or test the combination: engine run SCRIPT.",
+    ),
+    (
+        "E-WATCH-PORT",
+        "Twenty ports in a row are taken, so the page cannot be served.\n\
+      End other programs that watch behaviours, or name a port that is free: --port 9000.",
+    ),
+    (
+        "E-WATCH-SERVER",
+        "The server of the page cannot start: the system gives it no thread, no socket or no randomness for its token.\n\
+      The message has the system's reason.",
+    ),
+];

@@ -1,0 +1,37 @@
+//! The page of a run: one document of data, and the HTML that shows it, with or without a server.
+//!
+//! [`Document`] is the contract between this program and `web/*.js`; the page reads nothing else. Lengths are metres, times
+//! seconds, angles radians anticlockwise, pixels rows from the top left. Numbers by step are little-endian arrays in base64:
+//!
+//! | field of a [`Track`] | each step | unit |
+//! |---|---|---|
+//! | `x`, `y`, `prey_x`, `prey_y` | i16 | [`Document::unit_m`] metres, at the end of the step, before any recovery |
+//! | `yaw`, `prey_yaw` | i16 | milliradians |
+//! | `state`, `next_state` | u32 | as the grid numbers them |
+//! | `action` | u8 | index into `actions` |
+//! | `flags` | u8 | 1 recover, 2 contact, 4 fallen, 8 explored |
+//! | `reward` | f32 | sum of what the rules added |
+//! | `fired` | bits | rule `r` is bit `r % 8` of byte `r / 8`; `ceil(rules / 8)` bytes a step |
+//! | `beam`, `nearest_beam` | u16 | beam behind the last rule that fired (65535 none); beam with the least range |
+//! | `nearest` | u16 | millimetres |
+//! | `scan` | u8 | every [`ScanShape::every`]th beam, 255 the laser's longest range; may end before the steps do |
+//!
+//! A track of more than [`MOST_TRACK_STEPS`] steps holds the first and the last half of as many: `spans` says which.
+
+mod document;
+mod ground;
+mod html;
+mod picture;
+mod seed;
+mod shot;
+mod track;
+
+pub use document::{Document, Finding, RuleView, ScanShape, SettingView};
+pub use ground::{Ground, Outline};
+pub use html::{Page, page};
+pub use seed::{SeedData, SeedView, StateRow};
+pub use shot::{Shot, ShotMaker, StagePicture, shot_of};
+pub use track::{MOST_TRACK_STEPS, Moments, Track};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,214 @@
+// The world from above: what stands on one canvas, what moves on another.
+
+const TRAIL_STEPS = 400;
+
+class WorldMap {
+  constructor(box) {
+    [this.base, this.over] = box.querySelectorAll('canvas');
+    this.view = null;
+  }
+
+  /** What stands, and where each rule fired. */
+  drawBase(doc, track, litRule) {
+    const [x0, y0, x1, y1] = doc.world.bounds_m;
+    this.base.parentElement.style.setProperty('--shape', `${(x1 - x0).toFixed(2)} / ${(y1 - y0).toFixed(2)}`);
+    const sheet = fit(this.base);
+    if (!sheet) return;
+    const { pen, width, height } = sheet;
+    const [left, below, above, right] = [34, 24, 8, 16];
+    const scale = Math.min((width - left - right) / (x1 - x0), (height - above - below) / (y1 - y0));
+    const [spanX, spanY] = [(x1 - x0) * scale, (y1 - y0) * scale];
+    const fromX = left + (width - left - right - spanX) / 2;
+    const fromY = above + (height - above - below - spanY) / 2;
+    this.view = { floor: [fromX - 1, fromY - 1, spanX + 2, spanY + 2], scale, x: (m) => fromX + (m - x0) * scale, y: (m) => fromY + (y1 - m) * scale };
+    pen.fillStyle = ink.floor;
+    pen.fillRect(fromX, fromY, spanX, spanY);
+    pen.save();
+    pen.beginPath();
+    pen.rect(...this.view.floor);
+    pen.clip();
+    for (const solid of doc.world.solids) this.solid(pen, solid);
+    if (doc.world.route_m) {
+      const route = doc.world.route_m.map(([x, y]) => [this.view.x(x), this.view.y(y)]);
+      line(pen, route, ink.route, 1, [5, 4]);
+    }
+    if (track) this.marks(pen, doc, track, litRule);
+    pen.restore();
+    for (const at of ticks(x0, x1, spanX / 70)) if (this.view.x(at) < fromX + spanX - 2) label(pen, short(at), this.view.x(at), fromY + spanY + 14, 'center');
+    for (const at of ticks(y0, y1, spanY / 60)) label(pen, short(at), fromX - 6, this.view.y(at), 'right', 'middle');
+    label(pen, 'm', fromX + spanX + 5, fromY + spanY + 14);
+  }
+
+  outline(pen, solid) {
+    pen.beginPath();
+    if (solid.circle_m) {
+      const [x, y, radius] = solid.circle_m;
+      pen.arc(this.view.x(x), this.view.y(y), radius * this.view.scale, 0, 2 * Math.PI);
+      return;
+    }
+    solid.corners_m.forEach(([x, y], index) => {
+      if (index === 0) pen.moveTo(this.view.x(x), this.view.y(y));
+      else pen.lineTo(this.view.x(x), this.view.y(y));
+    });
+    pen.closePath();
+  }
+
+  solid(pen, solid) {
+    this.outline(pen, solid);
+    const colour = `rgb(${solid.colour.join(' ')})`;
+    if (solid.kind === 'paint') {
+      pen.fillStyle = colour;
+      pen.fill();
+      return;
+    }
+    pen.lineWidth = 1;
+    pen.strokeStyle = ink.wall;
+    pen.fillStyle = solid.kind === 'ground' ? ink.ground : ink.wall;
+    if (solid.kind === 'glass') pen.globalAlpha = 0.35;
+    pen.fill();
+    pen.globalAlpha = 1;
+    pen.stroke();
+  }
+
+  marks(pen, doc, track, litRule) {
+    for (let index = 0; index < track.count; index += 1) {
+      for (let rule = 0; rule < doc.rules.length; rule += 1) {
+        if (!track.fired(index, rule) || !marked(doc, rule)) continue;
+        if (litRule !== null && litRule !== rule) continue;
+        const [x, y] = [this.view.x(track.x[index] * doc.unit_m), this.view.y(track.y[index] * doc.unit_m)];
+        pen.beginPath();
+        pen.arc(x, y, litRule === rule ? 4 : 2.5, 0, 2 * Math.PI);
+        pen.fillStyle = ruleInk(rule);
+        pen.globalAlpha = litRule === rule ? 0.85 : 0.5;
+        pen.fill();
+      }
+    }
+    pen.globalAlpha = 1;
+  }
+
+  /** What moves: the trail, the laser's fan, the robot, the prey. */
+  drawOver(doc, track, step, share) {
+    const sheet = fit(this.over);
+    if (!sheet || !this.view || !track) return;
+    const { pen } = sheet;
+    const index = track.index(step);
+    if (index < 0) return;
+    const pose = between(track, index, share, doc.unit_m);
+    pen.beginPath();
+    pen.rect(...this.view.floor);
+    pen.clip();
+    this.trail(pen, doc, track, index, pose);
+    if (doc.world.prey && track.preyX.length) this.prey(pen, doc, track, index, share);
+    this.fan(pen, doc, track, index, pose);
+    this.robot(pen, doc, pose, track.flags[index]);
+  }
+
+  trail(pen, doc, track, index, pose) {
+    const from = Math.max(0, index - TRAIL_STEPS);
+    pen.lineWidth = 1.5;
+    pen.strokeStyle = ink.trail;
+    // Four pieces of rising strength: where it was lately counts more.
+    for (let piece = 0; piece < 4; piece += 1) {
+      const start = from + Math.floor(((index - from) * piece) / 4);
+      const end = from + Math.floor(((index - from) * (piece + 1)) / 4);
+      pen.globalAlpha = 0.15 + 0.22 * piece;
+      pen.beginPath();
+      let lifted = true;
+      for (let at = start; at <= end; at += 1) {
+        const point = at === index ? [pose.x, pose.y] : [track.x[at] * doc.unit_m, track.y[at] * doc.unit_m];
+        if (lifted) pen.moveTo(this.view.x(point[0]), this.view.y(point[1]));
+        else pen.lineTo(this.view.x(point[0]), this.view.y(point[1]));
+        lifted = (track.flags[at] & RECOVER) !== 0 || (at + 1 < track.count && track.step(at + 1) !== track.step(at) + 1);
+      }
+      pen.stroke();
+    }
+    pen.globalAlpha = 1;
+  }
+
+  fan(pen, doc, track, index, pose) {
+    const { kept, every, beams, max_range_m: most, forward_m: forward, tilt_rad: tilt } = doc.scan;
+    const from = [pose.x + forward * Math.cos(pose.yaw), pose.y + forward * Math.sin(pose.yaw)];
+    const end = (beam, range) => {
+      const angle = pose.yaw - Math.PI / 2 + (beam * Math.PI) / (beams - 1);
+      const reach = range * Math.cos(tilt);
+      return [this.view.x(from[0] + reach * Math.cos(angle)), this.view.y(from[1] + reach * Math.sin(angle))];
+    };
+    if ((index + 1) * kept <= track.scan.length) {
+      pen.beginPath();
+      pen.moveTo(this.view.x(from[0]), this.view.y(from[1]));
+      for (let beam = 0; beam < kept; beam += 1) pen.lineTo(...end(beam * every, (track.scan[index * kept + beam] / 255) * most));
+      pen.closePath();
+      pen.globalAlpha = 0.13;
+      pen.fillStyle = ink.accent;
+      pen.fill();
+      pen.globalAlpha = 1;
+    }
+    const nearest = track.nearest[index] / 1000;
+    const start = [this.view.x(from[0]), this.view.y(from[1])];
+    line(pen, [start, end(track.nearestBeam[index], nearest)], ink.accent, 1);
+    if (track.beam[index] !== NO_BEAM) {
+      const rule = doc.rules.findLastIndex((_, at) => track.fired(index, at));
+      const range = track.beam[index] === track.nearestBeam[index] ? nearest
+        : track.scan.length ? (track.scan[index * kept + Math.round(track.beam[index] / every)] / 255) * most : nearest;
+      line(pen, [start, end(track.beam[index], range || nearest)], ruleInk(Math.max(rule, 0)), 2.5);
+    }
+  }
+
+  robot(pen, doc, pose, flags) {
+    const [half, side] = doc.robot_half_m.map((metres) => metres * this.view.scale);
+    pen.save();
+    pen.translate(this.view.x(pose.x), this.view.y(pose.y));
+    pen.rotate(-pose.yaw);
+    const grow = Math.max(1, 6 / half);
+    pen.scale(grow, grow);
+    pen.fillStyle = flags & (CONTACT | FALLEN) ? ink.bad : ink.text;
+    pen.fillRect(-half, -side, 2 * half, 2 * side);
+    pen.fillStyle = ink.paper;
+    pen.beginPath();
+    pen.moveTo(half * 0.75, 0);
+    pen.lineTo(-half * 0.15, side * 0.6);
+    pen.lineTo(-half * 0.15, -side * 0.6);
+    pen.fill();
+    pen.restore();
+  }
+
+  prey(pen, doc, track, index, share) {
+    const last = Math.max(0, index - 1);
+    const mix = (column) => column[last] + (column[index] - column[last]) * share;
+    pen.save();
+    pen.translate(this.view.x(mix(track.preyX) * doc.unit_m), this.view.y(mix(track.preyY) * doc.unit_m));
+    pen.rotate(-track.preyYaw[index] / 1000);
+    for (const solid of doc.world.prey) {
+      pen.fillStyle = `rgb(${solid.colour.join(' ')})`;
+      pen.strokeStyle = ink.text;
+      pen.lineWidth = 1;
+      pen.beginPath();
+      const scale = this.view.scale;
+      if (solid.circle_m) pen.arc(solid.circle_m[0] * scale, -solid.circle_m[1] * scale, solid.circle_m[2] * scale, 0, 7);
+      else solid.corners_m.forEach(([x, y], at) => (at ? pen.lineTo(x * scale, -y * scale) : pen.moveTo(x * scale, -y * scale)));
+      pen.closePath();
+      pen.fill();
+      pen.stroke();
+    }
+    pen.restore();
+  }
+}
+
+/** `fn reward` speaks at nearly every step; it is no event to mark. */
+const marked = (doc, rule) => doc.rules[rule].value !== null;
+
+/** The pose a share of the way from the step before, where no recovery lies between. */
+function between(track, index, share, unit) {
+  const last = index - 1;
+  const apart = last < 0 || (track.flags[last] & RECOVER) || track.step(index) !== track.step(last) + 1;
+  const part = apart ? 1 : share;
+  const from = apart ? index : last;
+  let turn = track.yaw[index] - track.yaw[from];
+  if (turn > 3142) turn -= 6283;
+  if (turn < -3142) turn += 6283;
+  return {
+    x: (track.x[from] + (track.x[index] - track.x[from]) * part) * unit,
+    y: (track.y[from] + (track.y[index] - track.y[from]) * part) * unit,
+    yaw: (track.yaw[from] + turn * part) / 1000,
+  };
+}

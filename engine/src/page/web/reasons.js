@@ -1,0 +1,141 @@
+// Why: the step in words, the causes of its window, the script with the lines that spoke, findings, settings.
+
+function chip(rule) {
+  const made = el('span', { class: 'chip' });
+  made.style.background = ruleInk(rule);
+  return made;
+}
+
+/** The step as it was recorded. */
+function showStep(doc, track, index, step) {
+  const flags = track.flags[index];
+  const events = [
+    flags & CONTACT ? 'contact' : '', flags & FALLEN ? 'fallen' : '', flags & RECOVER ? 'recovery follows' : '',
+    flags & EXPLORED ? 'explored: not the best known action' : '',
+  ].filter(Boolean).join(', ');
+  const rows = [
+    ['step', `${whole(step)}, ends at ${((step + 1) * doc.period_s).toFixed(1)} s`],
+    ['state', `${track.state[index]} → ${track.nextState[index]}`],
+    ['action', motion(doc.actions[track.action[index]] ?? [0, 0])],
+    ['reward', signed(track.reward[index])],
+    ['nearest', `${(track.nearest[index] / 1000).toFixed(2)} m, ${beamWords(track.nearestBeam[index], doc.scan.beams)}`],
+    ['events', events || 'none'],
+  ];
+  const box = $('step');
+  if (box.children.length !== 2 * rows.length) box.replaceChildren(...rows.flatMap(([name]) => [el('dt', { text: name }), el('dd')]));
+  rows.forEach(([, words], row) => {
+    const cell = box.children[2 * row + 1];
+    if (cell.textContent !== words) cell.textContent = words;
+  });
+}
+
+function factWords(fact, doc) {
+  const value = fact.unit === 'metres' ? `${short(fact.value)} m`
+    : fact.unit === '' ? (fact.value ? 'true' : 'false')
+      : fact.unit === 'share' ? `${short(100 * fact.value)} %` : `${short(fact.value)} ${fact.unit}`;
+  return `${fact.name} = ${value}${fact.beam === null ? '' : ` (${beamWords(fact.beam, doc.scan.beams)})`}`;
+}
+
+/** What each rule said: with its facts where the moment brought them, else only which fired. */
+function showReasons(doc, track, index, reasons) {
+  const rules = doc.rules.map((rule, at) => ({ rule, at, fired: track.fired(index, at), why: reasons?.rules[at] }));
+  const shown = rules.filter(({ fired, why }) => fired || why);
+  $('reasons').replaceChildren(el('ul', {}, ...shown.map(({ rule, at, fired, why }) => {
+    const held = why && why.needed > 1 ? `; held ${why.held} of ${why.needed} steps` : '';
+    const words = fired ? `${signed(why ? why.added : rule.value ?? track.reward[index])}${held}`
+      : why && !why.asked ? 'not asked: an earlier rule ended the step' : `silent${held}`;
+    const facts = why ? why.parts.flatMap((part) => part.facts.map((fact) => factWords(fact, doc))) : [];
+    return el('li', {}, chip(at), fired ? el('b', { text: rule.name }) : el('span', { class: 'quiet', text: rule.name }), ` ${words}`,
+      ...[...new Set(facts)].map((fact) => el('div', { class: 'fact', text: fact })));
+  })));
+}
+
+/** The causes of one window of the curve: which rules, through which beams, when first. */
+function showCauses(doc, seed, track, phase, window_, jump, light_) {
+  const [from, to] = [window_ * doc.window_steps, (window_ + 1) * doc.window_steps];
+  const causes = doc.rules.map((rule, at) => ({ rule, at, count: 0, total: 0, first: null, beams: new Map() }));
+  let sum = 0;
+  for (let step = from; track && step < Math.min(to, track.end); step += 1) {
+    const index = track.index(step);
+    if (index < 0) continue;
+    sum += track.reward[index];
+    for (const cause of causes) {
+      if (!track.fired(index, cause.at)) continue;
+      cause.count += 1;
+      cause.total += cause.rule.value ?? 0;
+      cause.first ??= step;
+      const beam = track.beam[index];
+      if (beam !== NO_BEAM && cause.rule.value !== null) cause.beams.set(beam, (cause.beams.get(beam) ?? 0) + 1);
+    }
+  }
+  const byRule = phase === 'learning' ? seed.by_rule[window_] : null;
+  if (byRule) for (const cause of causes) cause.total = byRule[cause.at];
+  const spoke = causes.filter((cause) => cause.count > 0);
+  $('window-note').textContent = `steps ${whole(from)} to ${whole(to - 1)}: ${signed(sum)}`;
+  if (!spoke.length) {
+    $('causes').replaceChildren(el('p', { class: 'quiet', text: 'no rule fired' }));
+    return;
+  }
+  $('causes').replaceChildren(el('ul', {}, ...spoke.map((cause) => {
+    const beams = [...cause.beams].sort((a, b) => b[1] - a[1]).slice(0, 3)
+      .map(([beam, count]) => `${beamWords(beam, doc.scan.beams)}${count > 1 ? ` (${count} ×)` : ''}`).join('; ');
+    return el('li', { onpointerenter: () => light_(cause.at), onpointerleave: () => light_(null) },
+      chip(cause.at), el('b', { text: cause.rule.name }),
+      ` ${whole(cause.count)} ×, ${signed(cause.total)}, first at `,
+      el('button', { type: 'button', class: 'link', text: `step ${whole(cause.first)}`, onclick: () => jump(cause.first) }),
+      ...(beams ? [el('div', { class: 'fact', text: beams })] : []));
+  })));
+}
+
+/** The script, each rule's lines with its colour. */
+class Script {
+  constructor(box, onRule) {
+    Object.assign(this, { box, onRule, lines: [], lit: null });
+  }
+
+  draw(doc) {
+    $('script-path').textContent = doc.script_path;
+    const owner = (number) => doc.rules.findIndex((rule) => number >= rule.line && number < rule.line + rule.lines);
+    const texts = doc.script.replace(/\n$/, '').split('\n');
+    this.lines = texts.map((text, index) => {
+      const rule = owner(index + 1);
+      const line_ = el('div', {}, el('i', { text: index + 1 }), el('code', { text: text || ' ' }));
+      if (rule >= 0) {
+        line_.style.borderLeftColor = ruleInk(rule);
+        line_.addEventListener('pointerenter', () => this.onRule(rule));
+        line_.addEventListener('pointerleave', () => this.onRule(null));
+      }
+      return { line: line_, rule };
+    });
+    this.box.replaceChildren(...this.lines.map((entry) => entry.line));
+  }
+
+  /** Lights one rule's lines, and those of the rules that fired. */
+  light(litRule, fired) {
+    for (const { line: line_, rule } of this.lines) {
+      line_.classList.toggle('lit', rule >= 0 && rule === litRule);
+      line_.classList.toggle('fired', rule >= 0 && fired(rule));
+    }
+  }
+
+  wrong(number) {
+    this.lines.forEach(({ line: line_ }, index) => line_.classList.toggle('wrong', index + 1 === number));
+  }
+}
+
+function showFindings(doc) {
+  const box = $('findings');
+  if (!doc.findings.length) {
+    box.replaceChildren(el('p', { class: 'quiet', text: 'None.' }));
+    return;
+  }
+  box.replaceChildren(el('ul', {}, ...doc.findings.map((finding) => el('li', {},
+    el('b', { text: finding.code }), ` ${finding.line === null ? '' : `line ${finding.line}: `}${finding.message}`,
+    ...(finding.help ? [el('div', { class: 'quiet', text: finding.help })] : [])))));
+}
+
+function showSettings(doc) {
+  $('settings').replaceChildren(el('tbody', {}, ...doc.settings.map((setting) => el('tr', setting.changed ? { class: 'changed' } : {},
+    el('td', { text: setting.name }),
+    el('td', { text: `${setting.value}${setting.unit ? ` ${setting.unit}` : ''}` })))));
+}

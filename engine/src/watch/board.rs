@@ -1,0 +1,173 @@
+//! What the page is told: the last good run, the error after it, what is being done. Written by the one thread that learns,
+//! read by the server; nobody waits for a reader.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use serde::Serialize;
+use tokio::sync::watch;
+
+use crate::diagnostic::{Diagnostic, Result};
+use crate::experiment::{Learned, Ledger, Plan, TestFigures};
+use crate::page::{Document, SeedData, SeedView};
+
+/// One seed of a run.
+#[derive(Debug)]
+pub struct SeedRun {
+    /// What it learned.
+    pub learned: Arc<Learned>,
+    /// Steps of learning.
+    pub learning: Arc<Ledger>,
+    /// The test's figures, once it is done.
+    pub test: Option<TestFigures>,
+    /// Steps of the test.
+    pub tested: Ledger,
+}
+
+impl SeedRun {
+    /// The seed as the page's room reads it.
+    #[must_use]
+    pub fn data(&self) -> SeedData<'_> {
+        SeedData {
+            seed: self.learned.seed,
+            tally: Some(&self.learned.tally),
+            policy: Some(&self.learned.policy),
+            test: self.test.as_ref(),
+            learning: &self.learning,
+            tested: &self.tested,
+        }
+    }
+}
+
+/// A run that can be asked for its moments.
+pub struct SavedRun {
+    /// The number of the save, from 1.
+    pub save: u64,
+    /// The plan.
+    pub plan: Plan,
+    /// The seeds.
+    pub seeds: Vec<SeedRun>,
+}
+
+/// What one message to the page holds.
+#[derive(Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+enum Message<'a> {
+    Working { text: &'a str },
+    Failed { text: String, error: serde_json::Value },
+    Run { save: u64, done: bool, text: &'a str, document: &'a Document, before: Option<&'a Before> },
+}
+
+/// What the page draws behind a new run: the run of the save before.
+#[derive(Debug, Clone, Serialize)]
+struct Before {
+    seeds: Vec<SeedView>,
+}
+
+/// The messages that a page which comes now must get, oldest first; each with its number.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Posted {
+    pub messages: Vec<(u64, Arc<str>)>,
+}
+
+#[derive(Default)]
+struct Written {
+    number: u64,
+    run: Option<(u64, Arc<str>)>,
+    last: Option<(u64, Arc<str>)>,
+    saved: Option<Arc<SavedRun>>,
+    shown: Option<(u64, Before)>,
+    before: Option<Before>,
+}
+
+/// The board.
+pub struct Board {
+    written: Mutex<Written>,
+    news: watch::Sender<u64>,
+}
+
+impl Default for Board {
+    fn default() -> Self {
+        Self { written: Mutex::default(), news: watch::Sender::new(0) }
+    }
+}
+
+impl Board {
+    /// Says what is being done.
+    pub fn working(&self, text: &str) {
+        self.post(&Message::Working { text });
+    }
+
+    /// Says that a save could not be used; the last good run stays.
+    pub fn failed(&self, error: &Diagnostic) {
+        self.post(&Message::Failed { text: error.render(false), error: error.to_json() });
+    }
+
+    /// Shows a run; `done` if its test is over too.
+    ///
+    /// # Errors
+    /// If the document cannot be written as JSON.
+    pub fn run(&self, run: &Arc<SavedRun>, done: bool, text: &str, document: &Document) -> Result<()> {
+        let views = |document: &Document| Before {
+            seeds: document
+                .seeds
+                .iter()
+                .map(|seed| SeedView { learning: None, tested: None, ..seed.clone() })
+                .collect(),
+        };
+        let mut written = self.lock();
+        match written.shown.take() {
+            Some((save, shown)) if save != run.save => written.before = Some(shown),
+            _ => {}
+        }
+        written.shown = Some((run.save, views(document)));
+        let before = written.before.as_ref();
+        let text = encode(&Message::Run { save: run.save, done, text, document, before })?;
+        written.number += 1;
+        written.run = Some((written.number, text));
+        written.last = None;
+        written.saved = Some(Arc::clone(run));
+        let number = written.number;
+        drop(written);
+        self.news.send_replace(number);
+        Ok(())
+    }
+
+    /// The run that is shown, if its save has this number.
+    pub(super) fn saved(&self, save: u64) -> Option<Arc<SavedRun>> {
+        self.lock().saved.clone().filter(|run| run.save == save)
+    }
+
+    /// What a page that knows all up to number `after` must get.
+    pub(super) fn posted(&self, after: u64) -> Posted {
+        let written = self.lock();
+        let all = [&written.run, &written.last].into_iter().flatten();
+        Posted { messages: all.filter(|(number, _)| *number > after).cloned().collect() }
+    }
+
+    /// Tells when there is something new.
+    pub(super) fn news(&self) -> watch::Receiver<u64> {
+        self.news.subscribe()
+    }
+
+    fn post(&self, message: &Message<'_>) {
+        let Ok(text) = encode(message) else { return };
+        let mut written = self.lock();
+        written.number += 1;
+        written.last = Some((written.number, text));
+        let number = written.number;
+        drop(written);
+        self.news.send_replace(number);
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Written> {
+        // Whoever panicked while writing left whole fields behind.
+        self.written.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+fn encode(message: &Message<'_>) -> Result<Arc<str>> {
+    let text = serde_json::to_string(message).map_err(|error| {
+        Box::new(Diagnostic::new(crate::diagnostic::Kind::Disk, "E-IO", format!("cannot write a message: {error}")))
+    })?;
+    Ok(text.into())
+}

@@ -1,0 +1,21 @@
+//! The live page: learns again whenever the script, its world or its filters are saved, and shows the result in a browser.
+//!
+//! ```text
+//!   files.rs (saves) --> relearn.rs (this thread, all cores) --> board.rs (the last good run, the last error)
+//!                                                                    ^ reads
+//!   browser <--> socket.rs, guard.rs, server.rs (one thread) --------+
+//! ```
+//!
+//! Learning writes to the board and never waits for a reader. The server listens on loopback only; whoever asks must know
+//! the token, and come from the page's own address.
+
+mod board;
+mod files;
+mod guard;
+mod relearn;
+mod server;
+mod socket;
+
+pub use board::{Board, SavedRun, SeedRun};
+pub use relearn::{Relearner, WatchSettings};
+pub use server::{Address, listen};

@@ -1,0 +1,106 @@
+/// Debian's Chromium, driven through its pipe.
+mod chromium;
+
+use std::path::PathBuf;
+
+use chromium::Chromium;
+
+use crate::support::{Bench, SCRIPT, root};
+
+const DESK: (u32, u32, bool) = (1280, 720, false);
+const DESK_DARK: (u32, u32, bool) = (1280, 720, true);
+const PHONE: (u32, u32, bool) = (390, 844, false);
+const SHOWN: &str = "document.querySelector('main') !== null && !document.querySelector('main').hidden";
+
+fn pictures() -> PathBuf {
+    let folder = root().join("target/browser");
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// A page that is open, or nothing where there is no Chromium; a clear line says so.
+fn open(url: &str) -> Option<Chromium> {
+    let mut page = Chromium::start()?;
+    page.size(DESK);
+    page.go(url);
+    page.wait_for(SHOWN);
+    Some(page)
+}
+
+#[test]
+fn the_page_of_a_run_plays_scrubs_and_explains() {
+    let bench = Bench::new();
+    bench.engine(&["run", "short.rhai"]);
+    let path = bench.path().join("runs/short/1/report.html");
+    let Some(mut page) = open(&format!("file://{}", path.display())) else { return };
+    let step = "Number(document.querySelector('#moment b').textContent.replace(',', ''))";
+    page.wait_for(&format!("{step} === 0"));
+    page.key("ArrowRight", 0);
+    page.wait_for(&format!("{step} === 1"));
+    page.key("ArrowRight", 8);
+    page.wait_for(&format!("{step} === 101"));
+    page.key("9", 0);
+    page.key(" ", 0);
+    page.wait_for(&format!("{step} === 799 && document.getElementById('play').textContent === 'Play'"));
+    page.click("timeline", 0.5);
+    page.wait_for(&format!("{step} > 200 && {step} < 600"));
+    // The first window is the worst: a click there goes to a step that was punished, and lists its causes.
+    page.click("curve", 0.2);
+    page.wait_for(&format!("{step} < 400 && document.querySelector('#moment').textContent.includes('reward −1')"));
+    assert_eq!(page.value("document.querySelectorAll('#causes li').length > 0"), true);
+    assert_eq!(page.value("document.querySelectorAll('#script .fired').length"), 1);
+    page.click_on("document.querySelector('[data-phase=test]')");
+    page.wait_for("document.querySelector('[data-phase=test]').ariaPressed === 'true'");
+    assert_eq!(page.value("document.querySelectorAll('#frames img').length"), 2);
+    for (name, size) in [("report", DESK), ("report-dark", DESK_DARK), ("report-phone", PHONE)] {
+        page.size(size);
+        page.picture(&pictures().join(format!("{name}.png")));
+        assert_eq!(page.value("document.documentElement.scrollWidth <= innerWidth"), true, "{name} is too wide");
+    }
+    assert_eq!(page.complaints(), [] as [String; 0]);
+}
+
+#[test]
+fn a_hostile_script_is_only_text() {
+    let bench = Bench::new();
+    let evil = "</script><script>document.title='caught'</script><img src=x onerror=\\\"document.title='caught'\\\">";
+    bench.write("evil.rhai", SCRIPT.replace("too close", evil));
+    bench.engine(&["run", "evil.rhai"]);
+    let path = bench.path().join("runs/evil/1/report.html");
+    let Some(mut page) = open(&format!("file://{}", path.display())) else { return };
+    page.key("ArrowRight", 8);
+    assert_eq!(page.value("document.title"), "evil in small");
+    assert_eq!(page.value("document.querySelectorAll('#frames ~ img, h1 img, #script img, #causes img').length"), 0);
+    assert_eq!(page.complaints(), [] as [String; 0]);
+}
+
+#[cfg(feature = "serve")]
+#[test]
+fn a_save_redraws_the_live_page_and_a_bad_one_shows_its_error() {
+    let served = crate::watch::served::Served::new(&[]);
+    let Some(mut page) = open(&served.address()) else { return };
+    let tested = "document.getElementById('status').textContent";
+    page.wait_for(&format!("{tested}.startsWith('save 1') && {tested}.includes('tested')"));
+    page.picture(&pictures().join("live.png"));
+    let drawn = "document.querySelector('#curve canvas').toDataURL()";
+    let before = page.value(drawn);
+    served.bench.write("short.rhai", SCRIPT.replace("<= 0.25", "<= 0.4"));
+    page.wait_for(&format!("{tested}.startsWith('save 2') && {tested}.includes('tested')"));
+    page.wait_for("document.getElementById('script').textContent.includes('<= 0.4')");
+    assert_ne!(page.value(drawn), before);
+    assert_eq!(page.value("document.getElementById('states-note').textContent.includes('since the last save')"), true);
+    page.wait_for("document.querySelectorAll('#frames img').length === 2");
+    page.picture(&pictures().join("live-saved.png"));
+    served.bench.write("short.rhai", SCRIPT.replace("laser.nearest", "laser.nearst"));
+    page.wait_for("!document.getElementById('error').hidden");
+    let text = page.value("document.getElementById('error-text').textContent");
+    assert!(text.as_str().unwrap().contains("did you mean 'nearest'?"), "{text}");
+    assert_eq!(page.value("document.querySelector('#script .wrong i').textContent"), "3");
+    page.picture(&pictures().join("live-error.png"));
+    served.bench.write("short.rhai", SCRIPT);
+    page.wait_for("document.getElementById('error').hidden");
+    page.wait_for(&format!("{tested}.includes('tested')"));
+    page.choose("seed", "1");
+    page.wait_for("document.getElementById('map-note').textContent.startsWith('learning')");
+    assert_eq!(page.complaints(), [] as [String; 0]);
+}

@@ -1,0 +1,174 @@
+use std::io::{Read, Write};
+use std::net::TcpListener;
+
+use super::served::{Served, UPGRADE, frame, message, status};
+
+#[test]
+fn another_name_in_the_host_is_refused() {
+    let served = Served::new(&[]);
+    let Served { port, token, .. } = &served;
+    let ask = |hosts: &str| status(&served.answer(format!("GET /?token={token} HTTP/1.1\r\n{hosts}\r\n").as_bytes()));
+    assert_eq!(ask(&format!("Host: 127.0.0.1:{port}\r\n")), 200);
+    assert_eq!(ask(&format!("Host: localhost:{port}\r\n")), 200);
+    assert_eq!(ask("Host: evil.com\r\n"), 403);
+    assert_eq!(ask(&format!("Host: evil.com:{port}\r\n")), 403);
+    assert_eq!(ask("Host: 127.0.0.1\r\n"), 403);
+    assert_eq!(ask(""), 400);
+    assert_eq!(ask(&format!("Host: 127.0.0.1:{port}\r\nHost: evil.com\r\n")), 400);
+    assert_eq!(ask(&format!("Host: 127.0.0.1:{port}\r\nHost: 127.0.0.1:{port}\r\n")), 400);
+    let absolute = format!("GET http://evil.com/?token={token} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n");
+    assert_eq!(status(&served.answer(absolute.as_bytes())), 403);
+}
+
+#[test]
+fn a_websocket_from_another_page_is_refused() {
+    let served = Served::new(&[]);
+    let port = served.port;
+    for origin in ["https://evil.com", "null", "http://127.0.0.1", "http://evil.com:80"] {
+        assert_eq!(served.status("GET", "/live", &format!("Origin: {origin}\r\n{UPGRADE}")), 403, "{origin}");
+    }
+    assert_eq!(served.status("GET", "/live", UPGRADE), 403);
+    let two = format!("Origin: http://127.0.0.1:{port}\r\nOrigin: null\r\n{UPGRADE}");
+    assert_eq!(served.status("GET", "/live", &two), 403);
+    assert_eq!(served.status("GET", "/", "Origin: https://evil.com\r\n"), 403);
+    drop(served.socket());
+}
+
+#[test]
+fn without_the_token_of_this_run_nothing_is_told() {
+    let (served, other) = (Served::new(&[]), Served::new(&[]));
+    let port = served.port;
+    let ask = |query: &str| {
+        status(&served.answer(format!("GET /{query} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n").as_bytes()))
+    };
+    assert_eq!(ask(""), 401);
+    assert_eq!(ask("?token="), 401);
+    assert_eq!(ask(&format!("?token={}", other.token)), 401);
+    assert_eq!(ask(&format!("?token={}x", served.token)), 401);
+    assert_eq!(ask(&format!("?token={}", &served.token[..31])), 401);
+    assert_eq!(ask(&format!("?token={}", served.token)), 200);
+    let socket = format!(
+        "GET /live?token={} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nOrigin: http://127.0.0.1:{port}\r\n{UPGRADE}\r\n",
+        other.token
+    );
+    assert_eq!(status(&served.answer(socket.as_bytes())), 401);
+}
+
+#[test]
+fn nothing_changes_by_get_or_from_another_page() {
+    let served = Served::new(&[]);
+    assert_eq!(served.status("GET", "/relearn", ""), 405);
+    for kind in ["application/x-www-form-urlencoded", "text/plain", "application/json"] {
+        let headers = format!("Origin: https://evil.com\r\nContent-Type: {kind}\r\nContent-Length: 0\r\n");
+        assert_eq!(served.status("POST", "/relearn", &headers), 403);
+    }
+    assert_eq!(served.status("POST", "/relearn", "Content-Length: 0\r\n"), 403);
+    let own = format!("Origin: http://127.0.0.1:{}\r\nContent-Length: 0\r\n", served.port);
+    assert_eq!(served.status("DELETE", "/", &own), 405);
+    assert_eq!(served.status("POST", "/relearn", &own), 202);
+}
+
+#[test]
+fn no_path_leads_to_a_file() {
+    let served = Served::new(&[]);
+    for path in ["/../../etc/passwd", "/%2e%2e/%2e%2e/etc/passwd", "/..%2f..%2fetc/passwd", "/%00", "/run.toml", "//"] {
+        assert_eq!(served.status("GET", path, ""), 404, "{path}");
+    }
+    assert_eq!(served.status("GET", "/a\0b", ""), 400);
+}
+
+#[test]
+fn what_is_too_long_is_refused_before_it_is_read() {
+    let served = Served::new(&[]);
+    let own = format!("Origin: http://127.0.0.1:{}\r\n", served.port);
+    assert_eq!(served.status("GET", "/", &format!("X: {}\r\n", "a".repeat(9000))), 431);
+    assert_eq!(served.status("POST", "/relearn", &format!("{own}Content-Length: 1073741824\r\n")), 413);
+    assert_eq!(served.status("POST", "/relearn", &format!("{own}Transfer-Encoding: chunked\r\n")), 413);
+    let mut socket = served.socket();
+    // The beginning of a frame that says it has 100 MiB.
+    socket.write_all(&[0x82, 0xff, 0, 0, 0, 0, 6, 64, 0, 0, 1, 2, 3, 4]).unwrap();
+    let (_, content) = std::iter::repeat_with(|| frame(&mut socket)).find(|(kind, _)| *kind == 8).unwrap();
+    assert_eq!(content[..2], 1009_u16.to_be_bytes());
+}
+
+#[test]
+fn a_request_that_never_ends_is_ended() {
+    let served = Served::new(&[]);
+    let mut stream = served.connect();
+    stream.write_all(b"GET / HTTP/1.1\r\nHost: ").unwrap();
+    let mut answer = String::new();
+    drop(stream.read_to_string(&mut answer));
+    assert_eq!(status(&answer), 408);
+}
+
+#[test]
+fn a_ninth_connection_is_sent_away() {
+    let served = Served::new(&[]);
+    let mut held: Vec<_> = (0..8).map(|_| served.connect()).collect();
+    for stream in &mut held {
+        stream.write_all(b"GET").unwrap();
+    }
+    for _ in 0..1000 {
+        let mut answer = String::new();
+        drop(served.connect().read_to_string(&mut answer));
+        assert_eq!(status(&answer), 503);
+    }
+    drop(held);
+    let again = std::iter::repeat_with(|| served.status("GET", "/", "")).find(|status| *status != 503);
+    assert_eq!(again, Some(200));
+}
+
+#[test]
+fn a_client_that_does_not_read_holds_nothing_up() {
+    let served = Served::new(&[]);
+    let _stalled: Vec<_> = (0..3).map(|_| served.socket()).collect();
+    let mut reader = served.socket();
+    for save in 1..=4 {
+        message(&mut reader, |said| said["kind"] == "run" && said["save"] == save && said["done"] == true);
+        let script = format!("// {save}\n{}", crate::support::SCRIPT);
+        served.bench.write("short.rhai", script);
+    }
+}
+
+#[test]
+fn a_taken_port_leads_to_the_next() {
+    let taken = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = taken.local_addr().unwrap().port();
+    let served = Served::new(&["--port", &port.to_string()]);
+    assert!(served.port > port && served.port < port.saturating_add(20));
+    assert_eq!(served.status("GET", "/", ""), 200);
+}
+
+#[test]
+fn only_loopback_is_served() {
+    let bench = crate::support::Bench::new();
+    let told = bench.failure(&["watch", "short.rhai", "--web-bind", "0.0.0.0"]);
+    assert!(told.starts_with("exit status 2"), "{told}");
+    let served = Served::new(&[]);
+    // Every other address of this computer, as far as there is one, is closed.
+    for address in ["[::1]", "127.0.0.2"] {
+        assert!(std::net::TcpStream::connect(format!("{address}:{}", served.port)).is_err());
+    }
+}
+
+#[test]
+fn the_page_cannot_be_framed_guessed_or_kept() {
+    let served = Served::new(&[]);
+    let Served { port, token, .. } = &served;
+    let answer = served
+        .answer(format!("GET /?token={token} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n").as_bytes())
+        .to_lowercase();
+    let head = answer.split("\r\n\r\n").next().unwrap();
+    for line in [
+        "x-frame-options: deny",
+        "frame-ancestors 'none'",
+        "x-content-type-options: nosniff",
+        "referrer-policy: no-referrer",
+        "cache-control: no-store",
+        "default-src 'none'",
+        "content-type: text/html; charset=utf-8",
+    ] {
+        assert!(head.contains(line), "{line} is missing in {head}");
+    }
+    assert!(!head.contains("access-control") && !answer.contains(token.as_str()));
+}

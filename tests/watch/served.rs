@@ -1,0 +1,122 @@
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
+use std::process::{Child, Stdio};
+use std::time::Duration;
+
+use crate::support::Bench;
+
+/// A running `engine watch`, ended with the test.
+pub(crate) struct Served {
+    child: Child,
+    pub(crate) bench: Bench,
+    pub(crate) port: u16,
+    pub(crate) token: String,
+}
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        drop(self.child.kill());
+        drop(self.child.wait());
+    }
+}
+
+impl Served {
+    pub(crate) fn new(more: &[&str]) -> Self {
+        let bench = Bench::new();
+        let mut arguments = vec!["watch", "short.rhai", "--seeds", "2", "--no-open"];
+        arguments.extend(if more.is_empty() { &["--port", "0"] } else { more });
+        let mut child = bench.command(&arguments).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+        let mut line = String::new();
+        BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();
+        let (before, token) = line.trim().split_once("/?token=").unwrap();
+        let port = before.rsplit(':').next().unwrap().parse().unwrap();
+        Self { child, bench, port, token: token.to_owned() }
+    }
+
+    pub(crate) fn address(&self) -> String {
+        format!("http://127.0.0.1:{}/?token={}", self.port, self.token)
+    }
+
+    pub(crate) fn connect(&self) -> TcpStream {
+        let stream = TcpStream::connect(("127.0.0.1", self.port)).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(60))).unwrap();
+        stream
+    }
+
+    /// The whole answer to some bytes.
+    pub(crate) fn answer(&self, request: &[u8]) -> String {
+        let mut stream = self.connect();
+        stream.write_all(request).unwrap();
+        let mut answer = Vec::new();
+        // A server that refuses may close before all is read.
+        drop(stream.read_to_end(&mut answer));
+        String::from_utf8_lossy(&answer).into_owned()
+    }
+
+    /// The status of a request with the right host and token, and these headers besides.
+    pub(crate) fn status(&self, method: &str, path: &str, headers: &str) -> u16 {
+        let Self { port, token, .. } = self;
+        status(&self.answer(
+            format!("{method} {path}?token={token} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n{headers}\r\n").as_bytes(),
+        ))
+    }
+
+    /// A WebSocket, as the page opens it.
+    pub(crate) fn socket(&self) -> TcpStream {
+        let Self { port, token, .. } = self;
+        let mut stream = self.connect();
+        let request = format!(
+            "GET /live?token={token} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nOrigin: http://127.0.0.1:{port}\r\n{UPGRADE}\r\n"
+        );
+        stream.write_all(request.as_bytes()).unwrap();
+        let mut head = Vec::new();
+        while !head.ends_with(b"\r\n\r\n") {
+            let mut byte = [0];
+            stream.read_exact(&mut byte).unwrap();
+            head.push(byte[0]);
+        }
+        assert_eq!(status(&String::from_utf8_lossy(&head)), 101);
+        stream
+    }
+}
+
+/// The headers of a WebSocket.
+pub(crate) const UPGRADE: &str = "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n\
+                                  Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
+
+pub(crate) fn status(answer: &str) -> u16 {
+    answer.split(' ').nth(1).and_then(|status| status.parse().ok()).unwrap_or(0)
+}
+
+/// The next frame of a WebSocket: its kind and its content.
+pub(crate) fn frame(stream: &mut TcpStream) -> (u8, Vec<u8>) {
+    let mut head = [0; 2];
+    stream.read_exact(&mut head).unwrap();
+    let mut wide = [0; 8];
+    let length = match head[1] {
+        126 => {
+            stream.read_exact(&mut wide[6..]).unwrap();
+            u64::from_be_bytes(wide)
+        }
+        127 => {
+            stream.read_exact(&mut wide).unwrap();
+            u64::from_be_bytes(wide)
+        }
+        short => u64::from(short),
+    };
+    let mut content = vec![0; length as usize];
+    stream.read_exact(&mut content).unwrap();
+    (head[0] & 15, content)
+}
+
+/// The next message of some kind: `run`, `failed`, `working`.
+pub(crate) fn message(stream: &mut TcpStream, wanted: impl Fn(&serde_json::Value) -> bool) -> serde_json::Value {
+    loop {
+        let (kind, content) = frame(stream);
+        assert_eq!(kind, 1);
+        let message = serde_json::from_slice(&content).unwrap();
+        if wanted(&message) {
+            return message;
+        }
+    }
+}
