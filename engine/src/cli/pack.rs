@@ -53,12 +53,14 @@ pub(crate) enum PackCommand {
 pub(crate) struct PackNewArguments {
     /// The pack's name, owner/name such as ada/wall; without an owner, 'local' stands for it
     pub(crate) name: String,
-    /// A script to make the pack of, with its world and policies; without it, wall following
+    /// A script to make the pack of, with its world, its policies and its own filters; without it, wall following
     #[arg(long, value_name = "SCRIPT")]
     pub(crate) from: Option<PathBuf>,
     /// The folder [default: the name without its owner]
     #[arg(long, value_name = "FOLDER")]
     pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) filters: FilterSources,
 }
 
 #[derive(Debug, Args)]

@@ -20,7 +20,19 @@ pub(super) fn new(arguments: &PackNewArguments, console: &mut Console) -> Result
     let name = PackName::try_from(full)
         .map_err(|what| Box::new(Diagnostic::new(Kind::Usage, "E-PACK-NAME", what).help("such as ada/wall")))?;
     let folder = arguments.out.clone().unwrap_or_else(|| PathBuf::from(name.name()));
-    scaffold(&name, &folder, arguments.from.as_deref())?;
+    let from = match &arguments.from {
+        Some(script) => Some((script.as_path(), sources(&arguments.filters)?)),
+        None => None,
+    };
+    if from.is_none() && !arguments.filters.filter_dir.is_empty() {
+        let error = Diagnostic::new(
+            Kind::Usage,
+            "E-PACK-FOLDER",
+            "--filter-dir takes the filters of a script, and none is named",
+        );
+        return Err(Box::new(error.help("add --from SCRIPT")).into());
+    }
+    scaffold(&name, &folder, from)?;
     let shown = folder.display().to_string();
     console.json(&json!({ "name": name, "folder": shown }))?;
     console.line(&format!("pack:   {name} in {shown}"))?;
