@@ -5,6 +5,8 @@ mod forge;
 
 /// Archives that a reader could be fooled by, each refused with its error, through the library and the program.
 mod archives;
+/// What may be claimed, and how much of it may be measured again.
+mod evidence;
 /// From a new folder to an installed pack: every command in the order of its use.
 mod flow;
 /// A small pack with every byte flipped, every file deleted, every truncation; and seeded mutants.

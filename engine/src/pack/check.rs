@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use serde::Serialize;
 
 use super::author::Author;
-use super::evidence::{Proof, measure};
+use super::evidence::{Proof, check_length, measure};
 use super::{Pack, draft};
 use crate::diagnostic::Result;
 use crate::experiment::{Overrides, Progress};
@@ -60,6 +60,7 @@ pub fn check(
         find("capability", "'bridge' is asked for, but the script does not use it".to_owned());
     }
     let runnable = pack.plan(depends, &Overrides::default(), sources)?;
+    check_length(&runnable, author.seeds.len())?;
     let seeds: Vec<u64> = author.seeds.iter().copied().take(SEEDS).collect();
     let proofs = measure(&runnable, &seeds, 0, stop, report)?;
     let good = proofs.iter().filter(|proof| is_good(proof)).count();

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use serde::{Deserialize, Serialize};
 
 use super::marks::{Marks, STEPS};
-use super::{Digest, Pack, Runnable, fingerprint, malformed};
+use super::{Digest, MAX_EVIDENCE_STEPS, MAX_SEED_STEPS, MAX_SEEDS, Pack, Runnable, fingerprint, malformed};
 use crate::diagnostic::{Diagnostic, Kind, Result};
 use crate::experiment::{
     Cycle, Progress, Step, TestRun, Trail, WINDOW_STEPS, in_parallel, learn_into, learned_at, test_combined, test_into,
@@ -92,10 +92,37 @@ pub struct Difference {
     pub what: String,
 }
 
+/// Steps of learning and of the test of one seed.
+fn steps_of_seed(runnable: &Runnable) -> [u64; 2] {
+    let run = &runnable.plan.settings.run;
+    [if runnable.members.is_empty() { run.steps } else { 0 }, run.test_steps]
+}
+
+/// Refuses evidence that nobody could measure again in reasonable time: a stranger's claim must not hold a machine for
+/// days, nor an author claim what no stranger may check.
+pub(super) fn check_length(runnable: &Runnable, seeds: usize) -> Result<()> {
+    let [learning, test] = steps_of_seed(runnable);
+    let each = learning + test;
+    let all = each.saturating_mul(seeds as u64);
+    let (what, limit) = match () {
+        () if seeds > MAX_SEEDS => (format!("has {seeds} seeds"), format!("{MAX_SEEDS} seeds")),
+        () if each > MAX_SEED_STEPS => {
+            (format!("takes {each} steps for each seed"), format!("{MAX_SEED_STEPS} steps for each seed"))
+        }
+        () if all > MAX_EVIDENCE_STEPS => {
+            (format!("takes {all} steps for {seeds} seeds"), format!("{MAX_EVIDENCE_STEPS} steps in all"))
+        }
+        () => return Ok(()),
+    };
+    malformed("E-PACK-LIMIT", format!("the evidence of this behaviour {what}; the limit is {limit}"))
+        .help("its author names fewer steps in the script's run(), or fewer seeds in pack.toml")
+        .into()
+}
+
 /// Measures seeds; `stop` ends it early with an error, since half a measurement proves nothing.
 ///
 /// # Errors
-/// If the behaviour fails, or was stopped.
+/// `E-PACK-LIMIT` if that takes too many steps; if the behaviour fails, or was stopped.
 pub fn measure(
     runnable: &Runnable,
     seeds: &[u64],
@@ -103,6 +130,7 @@ pub fn measure(
     stop: &AtomicBool,
     report: &(dyn Fn(Progress) + Sync),
 ) -> Result<Vec<Proof>> {
+    check_length(runnable, seeds.len())?;
     let proofs = in_parallel(seeds, threads, |seed| {
         if runnable.members.is_empty() { learned(runnable, seed, stop, report) } else { combined(runnable, seed, stop) }
     })?;
@@ -167,7 +195,7 @@ impl Evidence {
     /// # Errors
     /// Never in practice: only if the engine's own probe fails.
     pub fn new(runnable: &Runnable, proofs: &[Proof]) -> Result<Self> {
-        let run = &runnable.plan.settings.run;
+        let [steps, test_steps] = steps_of_seed(runnable);
         // Of the seeds that do their task and fail least, the first: a user tests the best that was measured.
         let idle = |proof: &Proof| proof.claim.does_task == Some(false);
         let failures = |proof: &Proof| proof.claim.failures_per_1000;
@@ -176,8 +204,8 @@ impl Evidence {
         Ok(Self {
             engine: env!("CARGO_PKG_VERSION").to_owned(),
             behaves: fingerprint()?,
-            steps: if runnable.members.is_empty() { run.steps } else { 0 },
-            test_steps: run.test_steps,
+            steps,
+            test_steps,
             policy_seed: best.map(|proof| proof.claim.seed),
             seeds: proofs.iter().map(|proof| proof.claim.clone()).collect(),
         })
@@ -209,15 +237,37 @@ pub fn replay(
     let steps = pack.file(STEPS).and_then(|bytes| std::str::from_utf8(bytes).ok()).unwrap_or_default();
     let mut differences: Vec<Difference> =
         evidence.seeds.iter().zip(&proofs).filter_map(|(claim, proof)| difference(claim, proof, steps)).collect();
-    let carried = proofs.iter().find(|proof| Some(proof.claim.seed) == evidence.policy_seed);
-    if let (Some(path), Some(proof)) = (&pack.manifest().entry.policy, carried)
-        && let Some(policy) = &proof.policy
-        && runnable.policy_text(policy)?.as_bytes() != pack.file(path.as_str()).unwrap_or_default()
-    {
-        let what = format!("'{path}' is not the policy that this seed learns");
-        differences.push(Difference { seed: proof.claim.seed, step: None, what });
+    let [learning, test] = steps_of_seed(runnable);
+    if [evidence.steps, evidence.test_steps] != [learning, test] {
+        let what = format!(
+            "{} steps of learning and {} of the test are claimed, the script has {learning} and {test}",
+            evidence.steps, evidence.test_steps
+        );
+        differences.push(Difference { seed: seeds[0], step: None, what });
     }
+    differences.extend(policy_difference(pack, runnable, evidence, &proofs)?);
     Ok(differences)
+}
+
+/// The policy that the pack carries is the one that the seed learns for which it is claimed.
+fn policy_difference(
+    pack: &Pack,
+    runnable: &Runnable,
+    evidence: &Evidence,
+    proofs: &[Proof],
+) -> Result<Option<Difference>> {
+    let Some(path) = &pack.manifest().entry.policy else { return Ok(None) };
+    let carried = proofs.iter().find(|proof| Some(proof.claim.seed) == evidence.policy_seed);
+    let difference = |seed, what| Ok(Some(Difference { seed, step: None, what }));
+    match carried.and_then(|proof| Some((proof.claim.seed, proof.policy.as_ref()?))) {
+        None => difference(evidence.seeds[0].seed, format!("no seed is claimed to learn '{path}'")),
+        Some((seed, policy))
+            if runnable.policy_text(policy)?.as_bytes() != pack.file(path.as_str()).unwrap_or_default() =>
+        {
+            difference(seed, format!("'{path}' is not the policy that this seed learns"))
+        }
+        Some(_) => Ok(None),
+    }
 }
 
 fn difference(claimed: &Claim, proof: &Proof, steps: &str) -> Option<Difference> {

@@ -193,7 +193,8 @@ impl Manifest {
             }
         }
         if self.evidence.as_ref().is_some_and(|evidence| evidence.seeds.len() > MAX_SEEDS) {
-            return wrong(format!("the evidence has more than {MAX_SEEDS} seeds"));
+            return malformed("E-PACK-LIMIT", format!("the evidence has more than {MAX_SEEDS} seeds, the limit"))
+                .into();
         }
         self.check_entry()?;
         self.check_capabilities()

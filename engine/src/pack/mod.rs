@@ -53,6 +53,10 @@ pub const MAX_PACK_BYTES: usize = 64 << 20;
 pub const MAX_FILES: usize = 1000;
 /// The most seeds that a pack's evidence can have.
 const MAX_SEEDS: usize = 100;
+/// The most steps of one seed's evidence, learning and test.
+pub const MAX_SEED_STEPS: u64 = 1_000_000;
+/// The most steps of a pack's evidence, all seeds together.
+pub const MAX_EVIDENCE_STEPS: u64 = 10_000_000;
 /// The largest manifest, bytes.
 pub const MAX_MANIFEST_BYTES: usize = 512 << 10;
 /// The largest key or signature, bytes.

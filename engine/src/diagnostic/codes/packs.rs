@@ -69,7 +69,8 @@ pub(super) const PAGES: &[(&str, &str)] = &[
     ),
     (
         "E-PACK-LIMIT",
-        "A pack is larger than packs can be: 64 MiB, 1,000 files, a manifest of 512 KiB.\n\
+        "A pack is larger than packs can be: 64 MiB, 1,000 files, a manifest of 512 KiB;\n\
+         or its evidence takes longer than evidence can: 100 seeds, 1,000,000 steps each, 10,000,000 in all.\n\
          The limits hold before anything is believed that the pack says of itself.",
     ),
     (
