@@ -9,6 +9,9 @@ mod archives;
 mod evidence;
 /// From a new folder to an installed pack: every command in the order of its use.
 mod flow;
+/// Packs over https, from a real server with a certificate of its own.
+#[cfg(feature = "share")]
+mod https;
 /// A small pack with every byte flipped, every file deleted, every truncation; and seeded mutants.
 mod mutants;
 /// Packs that build on packs.

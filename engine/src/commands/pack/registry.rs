@@ -75,7 +75,11 @@ fn failed(address: &str, error: &Failure) -> Box<Diagnostic> {
         cause = inner.source();
     }
     let message = format!("'{}' did not work: {}", printable(address), printable(&reason));
-    let help = "check the address and the network; for a private registry: docker login, or skopeo login";
+    let help = if reason.contains("certificate") {
+        "do not go on unless the server is your own: then name its authority's file in SSL_CERT_FILE"
+    } else {
+        "check the address and the network; for a private registry: docker login, or skopeo login"
+    };
     Box::new(Diagnostic::new(Kind::Disk, "E-PACK-NETWORK", message).help(help))
 }
 
