@@ -6,7 +6,7 @@ use super::forge::{Forged, HEAD, manifest, pack_of, small, small_entries, small_
 use crate::support::{Bench, told};
 
 /// A hostile archive: what it is, its bytes, the code that it is refused with.
-type Case = (String, Vec<u8>, &'static str);
+pub(super) type Case = (String, Vec<u8>, &'static str);
 
 /// The small pack with its second entry changed.
 fn with(change: impl Fn(&mut Forged)) -> Vec<u8> {
@@ -262,7 +262,7 @@ fn manifests() -> Vec<Case> {
     cases
 }
 
-fn all() -> Vec<Case> {
+pub(super) fn all() -> Vec<Case> {
     [names(), kinds(), fields(), wholes(), manifests()].concat()
 }
 

@@ -20,5 +20,7 @@ mod needs;
 mod places;
 /// Strangers' scripts in a pack: all of them end, and in a clear error.
 mod scripts;
+/// The forty attacks of a stranger who gives away a pack, and where each is refused.
+mod strangers;
 /// Keys, signatures, locks: who is refused, and what to type then.
 mod trust;

@@ -63,7 +63,7 @@ fn every_deleted_file_is_refused() {
 }
 
 #[test]
-fn every_truncation_is_refused() {
+pub(super) fn every_truncation_is_refused() {
     let honest = small();
     for length in 0..honest.len() {
         let code = read(honest[..length].to_vec()).unwrap_err();

@@ -45,7 +45,7 @@ fn the_highest_versions_that_fit_everyone_are_chosen() {
 }
 
 #[test]
-fn circles_and_missing_versions_are_errors() {
+pub(super) fn circles_and_missing_versions_are_errors() {
     let root = offer("a/root 1.0.0", &[("a/one", "1")]);
     let circle = [offer("a/one 1.0.0", &[("a/two", "1")]), offer("a/two 1.0.0", &[("a/root", "1")])];
     let expected = "E-PACK-CYCLE: packs build on one another in a circle: a/root -> a/one -> a/two -> a/root";

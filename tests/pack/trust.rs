@@ -27,7 +27,7 @@ fn rebuild(bench: &Bench, version: &str, key: &str) -> String {
 }
 
 #[test]
-fn an_unsigned_pack_is_refused_unless_that_is_said() {
+pub(super) fn an_unsigned_pack_is_refused_unless_that_is_said() {
     let bench = Bench::new();
     bench.write("small.pack", super::forge::small());
     for command in [
@@ -44,7 +44,7 @@ fn an_unsigned_pack_is_refused_unless_that_is_said() {
 }
 
 #[test]
-fn unknown_foreign_changed_and_revoked_keys_are_refused() {
+pub(super) fn unknown_foreign_changed_and_revoked_keys_are_refused() {
     let bench = Bench::new();
     let file = signed_pack(&bench, "ada/short");
     bench.ok(&["pack", "verify", &file]);
@@ -64,7 +64,7 @@ fn unknown_foreign_changed_and_revoked_keys_are_refused() {
 }
 
 #[test]
-fn the_signature_of_another_pack_does_not_fit() {
+pub(super) fn the_signature_of_another_pack_does_not_fit() {
     let bench = Bench::new();
     let file = signed_pack(&bench, "ada/short");
     let second = rebuild(&bench, "0.2.0", "ada");
@@ -81,7 +81,7 @@ fn the_signature_of_another_pack_does_not_fit() {
 }
 
 #[test]
-fn a_changed_key_an_older_version_and_another_build_are_hard_stops() {
+pub(super) fn a_changed_key_an_older_version_and_another_build_are_hard_stops() {
     let bench = Bench::new();
     let file = signed_pack(&bench, "ada/short");
     let newer = rebuild(&bench, "0.2.0", "ada");
@@ -99,7 +99,7 @@ fn a_changed_key_an_older_version_and_another_build_are_hard_stops() {
 }
 
 #[test]
-fn what_is_installed_is_checked_again_before_it_runs() {
+pub(super) fn what_is_installed_is_checked_again_before_it_runs() {
     let bench = Bench::new();
     let file = signed_pack(&bench, "ada/short");
     bench.ok(&["pack", "install", &file]);
@@ -116,7 +116,7 @@ fn what_is_installed_is_checked_again_before_it_runs() {
 }
 
 #[test]
-fn something_new_that_is_asked_for_is_granted_by_name_or_refused() {
+pub(super) fn something_new_that_is_asked_for_is_granted_by_name_or_refused() {
     let head = format!("{HEAD}\n[capabilities]\nfilters_wasm = [\"filters/edges.wasm\"]\n");
     let mut files = small_files();
     files.insert(0, ("filters/edges.wasm", b"\0asm\x01\0\0\0"));
@@ -138,7 +138,7 @@ fn something_new_that_is_asked_for_is_granted_by_name_or_refused() {
 }
 
 #[test]
-fn a_name_that_looks_like_another_is_warned_of() {
+pub(super) fn a_name_that_looks_like_another_is_warned_of() {
     let bench = Bench::new();
     bench.write("small.pack", super::forge::small());
     bench.write("fake.pack", pack_of(&HEAD.replace("eve/small", "eve/sma11"), &small_files()));
@@ -149,7 +149,7 @@ fn a_name_that_looks_like_another_is_warned_of() {
 }
 
 #[test]
-fn a_pack_for_another_engine_is_refused_before_it_is_installed() {
+pub(super) fn a_pack_for_another_engine_is_refused_before_it_is_installed() {
     let bench = Bench::new();
     bench.write("a.pack", pack_of(&HEAD.replace(">=0.1", ">=99"), &small_files()));
     assert!(bench.failure(&["pack", "install", "a.pack", "--allow-unsigned"]).contains("E-PACK-ENGINE"));
@@ -157,7 +157,7 @@ fn a_pack_for_another_engine_is_refused_before_it_is_installed() {
 }
 
 #[test]
-fn a_policy_of_another_shape_is_the_authors_mistake() {
+pub(super) fn a_policy_of_another_shape_is_the_authors_mistake() {
     let bench = Bench::new();
     bench.engine(&["run", "short.rhai", "--out", "run"]);
     let policy = bench.read("run/policy.toml").replace("rows = 3", "rows = 4");
