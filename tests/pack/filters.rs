@@ -117,7 +117,7 @@ fn without_the_sandbox_a_pack_with_such_a_filter_says_how_to_get_it() {
     let head = format!("{HEAD}\n[capabilities]\nfilters_wasm = [\"filters/bright.wasm\"]\n");
     let script = (files[1].0, BRIGHT.as_bytes());
     bench.write("a.pack", pack_of(&head, &[("filters/bright.wasm", &module), files[0], script, files[2]]));
-    refused(&["run", "a.pack", "--allow-unsigned"]);
+    refused(&["pack", "verify", "a.pack", "--allow-unsigned", "--replay"]);
     // Looking at it and installing it take no sandbox: nothing of it runs.
     bench.ok(&["pack", "verify", "a.pack", "--allow-unsigned"]);
     bench.ok(&["pack", "install", "a.pack", "--allow-unsigned", "--grant", "filters_wasm:filters/bright.wasm"]);
