@@ -1,4 +1,4 @@
-//! The tar of a pack, in the one form that [`write`] gives it.
+//! The tar of a pack, in the one form that `write` gives it.
 //!
 //! [`read`] names the known tricks (links, devices, twins, `..`) with an error of their own. What is left is caught by
 //! one rule: the entries, written again, must give the same bytes. No reader can then see something else than another.

@@ -1,7 +1,7 @@
 //! SHARE: a behaviour in one file that carries its own evidence and cannot hurt who opens it.
 //!
 //! A pack is an uncompressed tar in one canonical form. Reading goes through narrowing gates: [`archive`] allows regular
-//! files with harmless names only, [`manifest`] says which files there must be, and [`Pack`] is what passed both. Nothing
+//! files with harmless names only, the manifest says which files there must be, and [`Pack`] is what passed both. Nothing
 //! here runs what a pack holds but [`Pack::plan`] and what builds on it.
 
 pub mod archive;
