@@ -55,7 +55,7 @@ pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::r
     let stem = if arguments.test { format!("test-step-{step}") } else { format!("step-{step}") };
     let stems = [format!("{stem}-before"), format!("{stem}-after")];
     let before = draw(plan, &playback, &format!("step {step} of {name}: what the robot saw when it chose"))?;
-    let Some(reasons) = StepReasons::of_next(plan, ledger, &mut playback)? else {
+    let Some(reasons) = StepReasons::of_next(&mut playback)? else {
         let message = format!("the log has {} steps of {name}, no step {step}", ledger.len());
         let error = Diagnostic::new(Kind::Usage, "E-LOG-STEP", message).help("steps are counted from 0");
         return Err(Box::new(error).into());
@@ -71,7 +71,7 @@ pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::r
     let (behaviour, world) = (plan.behaviour.name().to_owned(), plan.layout.name.clone());
     let report = Report { behaviour, world, seed: *seed, phase: name, reasons, pictures };
     console.json(&report)?;
-    print(console, plan, &report)?;
+    print(console, playback.plan(), &report)?;
     Ok(0)
 }
 

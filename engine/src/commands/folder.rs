@@ -127,7 +127,7 @@ pub(super) fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(
 
 fn write_seed(folder: &Path, plan: &Plan, result: &SeedResult) -> Result<()> {
     write_json(&folder.join("summary.json"), &result.summary)?;
-    let rules: Vec<String> = plan.behaviour.rules().iter().map(|rule| rule.name.clone()).collect();
+    let rules = plan.rule_names();
     let mut step = 0;
     let tally = &result.learned.tally;
     let rows: Vec<CurveRow> = (tally.windows.iter().enumerate())

@@ -6,6 +6,7 @@ use engine::diagnostic::{Diagnostic, Kind, Result, printable};
 use engine::experiment::{
     Cycle, Ledger, Overrides, Phase, Plan, Playback, Record, RuleScore, Step, learn_into, test_combined, test_into,
 };
+use engine::learner::Carry;
 use engine::robot::SimulatedRobot;
 use engine::store::{Decider, RecordedRun, RunLog, StoredRun};
 use serde::Serialize;
@@ -29,8 +30,18 @@ struct Report {
     /// Steps that were done, and how many of them, from the first, are in the log.
     steps: u64,
     kept: usize,
+    /// Where the reward was swapped while the robot learned.
+    swaps: Vec<SwapEntry>,
     rules: Vec<RuleEntry>,
     listed: Vec<StepEntry>,
+}
+
+#[derive(Serialize)]
+struct SwapEntry {
+    /// The first step under the new reward.
+    step: u64,
+    /// What became of the table: `keep`, `decay` or `reset`.
+    table: Carry,
 }
 
 #[derive(Serialize)]
@@ -90,8 +101,9 @@ pub(crate) fn run(arguments: &ReplayArguments, console: &mut Console) -> std::re
         phase: name,
         steps: ledger.steps(),
         kept: ledger.len(),
-        rules: rules(plan, ledger),
-        listed: listed.filter_map(|step| entry(plan, ledger, step)).collect(),
+        swaps: swaps(plan, phase),
+        rules: rules(plan, phase, ledger),
+        listed: listed.filter_map(|step| entry(plan_of(plan, phase, step), ledger, step)).collect(),
     };
     console.json(&report)?;
     print(console, &report)?;
@@ -124,17 +136,27 @@ fn differs(what: &str) -> Diagnostic {
         .help("this engine, or a filter, is not the one that recorded the run: compare 'engine' in run.toml")
 }
 
-fn rules(plan: &Plan, ledger: &Ledger) -> Vec<RuleEntry> {
-    let entry = |name: &str| RuleEntry {
-        name: name.to_owned(),
-        score: RuleScore::default(),
-        first_step: None,
-        last_step: None,
-    };
-    let mut rules: Vec<RuleEntry> = plan.behaviour.rules().iter().map(|rule| entry(&rule.name)).collect();
+fn swaps(plan: &Plan, phase: Phase) -> Vec<SwapEntry> {
+    let swaps = plan.swaps().filter(|_| phase == Phase::Learning);
+    swaps.map(|(step, table, ..)| SwapEntry { step, table }).collect()
+}
+
+/// The plan under which a step was done.
+fn plan_of(plan: &Plan, phase: Phase, step: usize) -> &Plan {
+    match phase {
+        Phase::Learning => plan.leg_of(step as u64),
+        Phase::Test => plan,
+    }
+}
+
+fn rules(plan: &Plan, phase: Phase, ledger: &Ledger) -> Vec<RuleEntry> {
+    let entry = |name: String| RuleEntry { name, score: RuleScore::default(), first_step: None, last_step: None };
+    let mut rules: Vec<RuleEntry> = plan.rule_names().into_iter().map(entry).collect();
     for step in 0..ledger.len() {
         for (rule, value) in ledger.fired(step) {
-            let RuleEntry { score, first_step, last_step, .. } = &mut rules[rule];
+            let name = &plan_of(plan, phase, step).behaviour.rules()[rule].name;
+            let Some(entry) = rules.iter_mut().find(|entry| entry.name == *name) else { continue };
+            let RuleEntry { score, first_step, last_step, .. } = entry;
             score.fired += 1;
             score.total += value;
             first_step.get_or_insert(step);
@@ -173,6 +195,9 @@ fn print(console: &mut Console, report: &Report) -> std::result::Result<(), Cons
     console.line(&format!("behaviour: {behaviour} in {world}, seed {seed}"))?;
     let of = if *steps == *kept as u64 { String::new() } else { format!(" of {steps}") };
     console.line(&format!("played:    {kept}{of} steps of {phase}; each is the recorded one, bit for bit"))?;
+    for SwapEntry { step, table } in &report.swaps {
+        console.line(&format!("swapped:   the reward before step {step}; of the table: {}", table.name()))?;
+    }
     console.line(&format!("{:20} {:>8} {:>10} {:>8} {:>8}", "rule", "fired", "total", "first", "last"))?;
     let step = |step: Option<usize>| step.map_or("-".to_owned(), |step| step.to_string());
     for RuleEntry { name, score, first_step, last_step } in &report.rules {
@@ -218,8 +243,11 @@ fn verify(recorded: &RecordedRun, console: &mut Console) -> std::result::Result<
     let (plan, seed) = (&stored.plan, stored.seed);
     let stop = on_ctrl_c()?;
     // A run that was stopped is done again as far as it came.
-    let steps =
-        Overrides { steps: Some(log.learning.steps()), test_steps: Some(log.test.steps()), ..Overrides::default() };
+    let steps = Overrides {
+        steps: Some(log.learning.last_leg().0),
+        test_steps: Some(log.test.steps()),
+        ..Overrides::default()
+    };
     let plan = plan.clone().with_changes(&steps)?;
     let mut again = RunLog::new(&plan);
     let state_hash = match &stored.decider {

@@ -77,6 +77,11 @@ pub(crate) fn run(arguments: &RescoreArguments, console: &mut Console) -> std::r
         let error = Diagnostic::new(Kind::State, "E-RESCORE", message).help("give a run that learned");
         return Err(Box::new(error).into());
     }
+    if !plan.earlier.is_empty() {
+        let message = "the reward of this run was swapped while it learned: there is no one reward to compare with";
+        let error = Diagnostic::new(Kind::State, "E-RESCORE", message);
+        return Err(Box::new(error.help("run the behaviour again, and rescore that run")).into());
+    }
     let new = plan_with_rules_of(&plan, Arc::new(Behaviour::load(&arguments.script)?))?;
     let rescored = rescore(&plan, &new, seed, &log.learning, arguments.passes)?;
     let states_changed = rescored.changed_states();

@@ -92,9 +92,22 @@ impl<R: Robot> Cycle<R> {
             since_recovery: 0,
         };
         cycle.perceive()?;
-        cycle.fill_facts(0);
-        cycle.judge.calibrate()?;
+        cycle.calibrate()?;
         Ok(cycle)
+    }
+
+    /// From the next step on another script judges; it is calibrated on the present observation, as at the start of a run.
+    ///
+    /// # Errors
+    /// If the script fails.
+    pub fn swap_judge(&mut self, plan: &Plan) -> Result<()> {
+        self.judge = plan.judge()?;
+        self.calibrate()
+    }
+
+    fn calibrate(&mut self) -> Result<()> {
+        self.fill_facts(0);
+        self.judge.calibrate()
     }
 
     /// The present state, as the script perceives it.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::{combination, outlook};
+use super::{Leg, combination, outlook};
 use crate::diagnostic::{Diagnostic, Kind, Result, nearest_name, printable};
 use crate::filter::{Catalogue, Chain};
 use crate::geometry::Twist;
@@ -38,6 +38,8 @@ pub struct Plan {
     pub layout: Arc<Layout>,
     /// The filters that its chain may use.
     pub filters: Arc<Catalogue>,
+    /// What is learned under other rewards first; none unless the reward was swapped while the robot learned.
+    pub earlier: Vec<Leg>,
 }
 
 impl Plan {
@@ -70,7 +72,7 @@ impl Plan {
             Some(world) => Arc::new(Layout::load(&find_world(&self.behaviour, world, None)?)?),
             None => self.layout,
         };
-        Self::with_layout(self.behaviour, settings, layout, self.filters)
+        Ok(Self::with_layout(self.behaviour, settings, layout, self.filters)?.after(self.earlier))
     }
 
     /// A plan from parts that were resolved before.
@@ -84,7 +86,7 @@ impl Plan {
         filters: Arc<Catalogue>,
     ) -> Result<Self> {
         combination::check(&behaviour, &settings)?;
-        let plan = Self { behaviour, settings, layout, filters };
+        let plan = Self { behaviour, settings, layout, filters, earlier: Vec::new() };
         plan.chain()?;
         plan.grid()?;
         plan.judge()?;

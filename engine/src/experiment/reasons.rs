@@ -100,9 +100,10 @@ impl StepReasons {
     ///
     /// # Errors
     /// As [`Playback::advance`].
-    pub fn of_next(plan: &Plan, ledger: &Ledger, playback: &mut Playback<'_>) -> Result<Option<Self>> {
-        let index = playback.done();
+    pub fn of_next(playback: &mut Playback<'_>) -> Result<Option<Self>> {
+        let (index, ledger) = (playback.done(), playback.ledger());
         let (Some(step), Some(record)) = (playback.advance()?, ledger.record(index)) else { return Ok(None) };
+        let plan = playback.plan();
         let (cycle, twist) = (playback.cycle(), plan.settings.actions[step.action]);
         let cells = |state: usize| StateCells { index: state, cells: cycle.grid().cells(state) };
         let stopped_by = cycle.fired().iter().rposition(Option::is_some).filter(|_| step.recover);
@@ -138,7 +139,7 @@ impl StepReasons {
     pub fn of_step(plan: &Plan, seed: u64, phase: Phase, ledger: &Ledger, step: usize) -> Result<Option<Self>> {
         let mut playback = Playback::new(plan, seed, phase, ledger)?;
         playback.seek(step)?;
-        Self::of_next(plan, ledger, &mut playback)
+        Self::of_next(&mut playback)
     }
 }
 

@@ -8,6 +8,7 @@
 
 use std::sync::Arc;
 
+use super::legs::first_fixed_difference;
 use super::{Ledger, Phase, Plan, Playback};
 use crate::diagnostic::{Diagnostic, Kind, Result, printable};
 use crate::learner::{Learner, Policy, Transition};
@@ -99,23 +100,14 @@ impl Rescored {
 pub fn plan_with_rules_of(plan: &Plan, behaviour: Arc<Behaviour>) -> Result<Plan> {
     let (old, new) = (plan.behaviour.settings(), behaviour.settings());
     let mut settings = plan.settings.clone();
-    for row in SETTINGS {
-        let (before, after) = ((row.get)(old), (row.get)(new));
-        match row.group {
-            _ if before == after => {}
-            "learner" if apply(&mut settings, row.group, row.key, &after).is_ok() => {}
-            "run" if row.key != "period_s" => {}
-            _ => return other(&behaviour, &row.name(), &format!("{}.{}", row.group, row.key)).into(),
-        }
+    if let Some((what, place)) = first_fixed_difference(old, new) {
+        return other(&behaviour, &what, &place).into();
     }
-    let parts: [(bool, &str, &str); 4] = [
-        (old.world == new.world, "the world", "world"),
-        (old.filters == new.filters, "the filters", "filter:0"),
-        (old.actions == new.actions, "the actions", "actions"),
-        (old.policies == new.policies, "the policies", "policy:0"),
-    ];
-    if let Some((_, what, place)) = parts.iter().find(|(same, ..)| !same) {
-        return other(&behaviour, what, place).into();
+    for row in SETTINGS.iter().filter(|row| row.group == "learner" && (row.get)(old) != (row.get)(new)) {
+        let value = (row.get)(new);
+        if apply(&mut settings, row.group, row.key, &value).is_err() {
+            return other(&behaviour, &row.name(), &row.name()).into();
+        }
     }
     Plan::with_layout(behaviour, settings, Arc::clone(&plan.layout), Arc::clone(&plan.filters))
 }

@@ -141,7 +141,7 @@ impl Summary {
             reinforcement_per_400: curve,
             rules: rule_totals(plan, &learned.tally),
             states_seen: learned.policy.rows().iter().flatten().count(),
-            interrupted: learned.steps < plan.settings.run.steps || test.steps < plan.settings.run.test_steps,
+            interrupted: learned.steps < plan.learning_steps() || test.steps < plan.settings.run.test_steps,
             state_hash: learned.state_hash.clone(),
             log_sha256: None,
             combination: None,
@@ -183,13 +183,14 @@ impl Summary {
     }
 }
 
+/// What is counted has no column for a rule that only earlier legs had, unless it was counted in these legs.
 fn rule_totals(plan: &Plan, tally: &Tally) -> Vec<RuleTotal> {
-    let total = |(index, rule): (usize, &crate::reward::RuleText)| RuleTotal {
-        name: rule.name.clone(),
-        fired: tally.fired[index],
+    let total = |(index, (name, fired)): (usize, (String, &u64))| RuleTotal {
+        name,
+        fired: *fired,
         total: (0..tally.windows.len()).map(|window| tally.by_rule(window)[index]).sum(),
     };
-    plan.behaviour.rules().iter().enumerate().map(total).collect()
+    plan.rule_names().into_iter().zip(&tally.fired).enumerate().map(total).collect()
 }
 
 /// Many seeds of one behaviour.

@@ -62,6 +62,28 @@ impl Tally {
         window.steps == WINDOW_STEPS
     }
 
+    /// Goes on for `steps` more with the rules `now`, in whose order all counts then stand; rules of the same name are one.
+    pub(super) fn swap_rules(&mut self, before: &[String], now: &[String], steps: u64) {
+        let place = |name: &String| now.iter().position(|other| other == name);
+        let places: Vec<Option<usize>> = before.iter().map(place).collect();
+        let mut next = Self::new(now.len(), steps + self.windows.iter().map(|window| window.steps).sum::<u64>());
+        for (count, place) in self.fired.iter().zip(&places) {
+            place.iter().for_each(|place| next.fired[*place] += count);
+        }
+        for sums in self.by_rule.chunks(before.len().max(1)) {
+            let from = next.by_rule.len();
+            next.by_rule.resize(from + now.len(), 0.0);
+            for (sum, place) in sums.iter().zip(&places) {
+                place.iter().for_each(|place| next.by_rule[from + place] += sum);
+            }
+        }
+        next.windows.extend_from_slice(&self.windows);
+        next.failures = self.failures;
+        next.goals = self.goals;
+        next.contacts = self.contacts;
+        *self = next;
+    }
+
     /// By rule: what it added in one window.
     #[must_use]
     pub fn by_rule(&self, window: usize) -> &[f64] {
@@ -100,5 +122,18 @@ mod tests {
         assert_eq!(tally.curve(), [-4.0, -1.0]);
         assert_eq!((tally.fired.as_slice(), tally.failures, tally.contacts), (&[5, 0][..], 5, 5));
         assert_eq!(tally.by_rule(0), [-4.0, 0.0]);
+    }
+
+    #[test]
+    fn swapped_rules_keep_the_counts_of_their_names_and_of_those_that_are_gone() {
+        let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
+        let mut tally = Tally::new(2, 2);
+        let step = Step { index: 0, state: 0, action: 0, reward: -1.5, next_state: 0, recover: true, contact: false };
+        tally.count(&step, &[Some(-1.0), Some(-0.5)]);
+        tally.swap_rules(&names(&["wall", "lost"]), &names(&["lost", "slow", "wall"]), 400);
+        tally.count(&step, &[Some(-2.0), None]);
+        assert_eq!(tally.fired, [2, 0, 1]);
+        assert_eq!(tally.by_rule(0), [-2.5, 0.0, -1.0]);
+        assert_eq!((tally.failures, tally.curve()), (2, vec![-3.0]));
     }
 }

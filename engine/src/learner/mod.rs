@@ -36,6 +36,7 @@
 //! | softmax subtracts the greatest value first | exp(-1 / 0.009) underflows in single precision otherwise |
 
 mod backup;
+mod carry;
 mod combined;
 mod mirror;
 mod policy;
@@ -53,6 +54,7 @@ use mirror::Mirrored;
 use replay::Replay;
 
 pub use backup::{Backup, Transition};
+pub use carry::Carry;
 pub use combined::{Combined, Decision};
 pub use mirror::Mirror;
 pub use policy::{Policy, PolicyRow};
@@ -72,18 +74,38 @@ impl Learner {
     /// A learner that knows nothing yet: first values uniform in the settings' range.
     #[must_use]
     pub fn new(settings: &LearnerSettings, states: usize, actions: usize, mut random: Random) -> Self {
-        let (low, high) = (settings.initial_low, settings.initial_high.max(settings.initial_low));
-        let table = QTable::new(states, actions, || random.between(low, high));
+        let table = first_table(settings, states, actions, &mut random);
         Self { table, softmax: Softmax::new(settings, actions), backup: backup(settings), mirror: None, random }
+    }
+
+    /// Goes on under another reward, with these settings: the table as `carry` says, without memory of earlier states.
+    pub fn swap_reward(&mut self, settings: &LearnerSettings, mirror: Option<Mirror>, carry: Carry) {
+        self.forget();
+        let (states, actions) = (self.table.states(), self.table.actions());
+        match carry {
+            Carry::Keep => {}
+            Carry::Decay => self.table.halve(settings.cooling_visits),
+            Carry::Reset => self.table = first_table(settings, states, actions, &mut self.random),
+        }
+        self.softmax = Softmax::new(settings, actions);
+        self.backup = backup(settings);
+        self.mirror = None;
+        if let Some(mirror) = mirror {
+            self.learn_mirrored(settings, mirror);
+        }
     }
 
     /// The same learner, which learns the mirror image of every step too. A visit of a state is one of its image as well.
     #[must_use]
     pub fn with_mirror(mut self, settings: &LearnerSettings, mirror: Mirror) -> Self {
-        let (own, image) = (self.backup, backup(settings));
+        self.learn_mirrored(settings, mirror);
+        self
+    }
+
+    fn learn_mirrored(&mut self, settings: &LearnerSettings, mirror: Mirror) {
+        let (own, image) = (backup(settings), backup(settings));
         self.backup = Box::new(Mirrored { mirror: mirror.clone(), own, image });
         self.mirror = Some(mirror);
-        self
     }
 
     /// Chooses an action in `state` by softmax at the state's temperature, and counts the visit.
@@ -122,6 +144,11 @@ impl Learner {
     pub fn policy(&self) -> Policy {
         Policy::from_table(&self.table)
     }
+}
+
+fn first_table(settings: &LearnerSettings, states: usize, actions: usize, random: &mut Random) -> QTable {
+    let (low, high) = (settings.initial_low, settings.initial_high.max(settings.initial_low));
+    QTable::new(states, actions, || random.between(low, high))
 }
 
 /// The way of learning that the settings name, with its replay.
@@ -188,6 +215,38 @@ mod tests {
         learner.choose(0);
         learner.choose(2);
         assert_eq!(learner.table().visits(), [1, 1, 1]);
+    }
+
+    #[test]
+    fn a_table_is_kept_halved_or_drawn_anew_under_another_reward() {
+        let mut settings = Settings::default().learner;
+        settings.cooling_visits = 10;
+        let learned = || {
+            let mut learner = Learner::new(&settings, 2, 2, Random::new(1, Stream::Learner));
+            for _ in 0..30 {
+                learner.visit(1);
+            }
+            let wanted = [0.0, -0.25, 1.5, 3.0];
+            for (index, value) in wanted.into_iter().enumerate() {
+                let now = learner.table.value(index / 2, index % 2);
+                learner.table.add(index / 2, index % 2, value - now);
+            }
+            learner
+        };
+        let after = |carry| {
+            let mut learner = learned();
+            learner.swap_reward(&settings, None, carry);
+            learner.table
+        };
+        assert_eq!(after(Carry::Keep), learned().table);
+        let decayed = after(Carry::Decay);
+        let wanted = [0.0, -0.125, 0.75, 1.5];
+        assert!(decayed.values().iter().zip(wanted).all(|(value, wanted)| (value - wanted).abs() < 1e-12));
+        assert_eq!(decayed.visits(), [0, 5]);
+        let reset = after(Carry::Reset);
+        let range = settings.initial_low..=settings.initial_high;
+        assert!(reset.values().iter().all(|value| range.contains(value)));
+        assert_eq!(reset.visits(), [0, 0]);
     }
 
     #[test]

@@ -64,6 +64,12 @@ impl QTable {
         before
     }
 
+    /// Halves what is known: every value, and the visits of each state, of which no more than `most` count.
+    pub fn halve(&mut self, most: u64) {
+        self.values.iter_mut().for_each(|value| *value *= 0.5);
+        self.visits.iter_mut().for_each(|visits| *visits = (*visits).min(most) / 2);
+    }
+
     /// How often each state was visited.
     #[must_use]
     pub fn visits(&self) -> &[u64] {

@@ -6,6 +6,7 @@ use super::seed::{SeedData, SeedView};
 use super::{Ground, Moments, Shot};
 use crate::diagnostic::Result;
 use crate::experiment::{Plan, WINDOW_STEPS};
+use crate::learner::Carry;
 use crate::settings::{SETTINGS, Settings, Value};
 use crate::world::{HALF_LENGTH_M, HALF_WIDTH_M};
 
@@ -41,8 +42,10 @@ pub struct Document {
     pub period_s: f64,
     /// Steps in a window of the curve.
     pub window_steps: u64,
-    /// Steps of learning that are planned.
+    /// Steps of learning that are planned, in all legs.
     pub planned_steps: u64,
+    /// Where the reward was swapped while the robot learned.
+    pub swaps: Vec<Swap>,
     /// Forward speed, m/s, and turning speed, rad/s, of each action.
     pub actions: Vec<[f64; 2]>,
     /// Rows and columns of the grid.
@@ -59,6 +62,15 @@ pub struct Document {
     pub shots: Vec<Shot>,
     /// What reading the script found; what trying it out found too, where that was done.
     pub findings: Vec<Finding>,
+}
+
+/// A swap of the reward while the robot learned.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Swap {
+    /// The first step under the new reward.
+    pub step: u64,
+    /// What became of the table.
+    pub table: Carry,
 }
 
 /// How the laser's beams stand in a track.
@@ -188,7 +200,8 @@ impl Document {
             robot_half_m: [HALF_LENGTH_M, HALF_WIDTH_M],
             period_s: run.period_s,
             window_steps: WINDOW_STEPS,
-            planned_steps: run.steps,
+            planned_steps: plan.learning_steps(),
+            swaps: plan.swaps().map(|(step, table, ..)| Swap { step, table }).collect(),
             actions: actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
             grid: [rows, columns],
             scan: ScanShape {

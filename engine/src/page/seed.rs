@@ -83,7 +83,7 @@ impl SeedView {
             seed: data.seed,
             shown_first: false,
             learned_at: learned_at(&curve),
-            by_rule: data.tally.map_or_else(Vec::new, |tally| windows.map(|at| tally.by_rule(at).to_vec()).collect()),
+            by_rule: data.tally.map_or_else(Vec::new, |tally| windows.map(|at| by_rule(plan, tally, at)).collect()),
             curve,
             test: data.test.cloned(),
             states_met: data.policy.map_or(0, |policy| policy.rows().iter().flatten().count()),
@@ -129,6 +129,11 @@ impl SeedView {
     pub(super) fn badness(&self) -> u64 {
         self.test.as_ref().map_or(0, |test| (test.failures_per_1000 * 1000.0) as u64)
     }
+}
+
+/// What the plan's own rules added in a window; rules that only earlier legs had come after them.
+fn by_rule(plan: &Plan, tally: &Tally, window: usize) -> Vec<f64> {
+    tally.by_rule(window).iter().take(plan.behaviour.rules().len()).copied().collect()
 }
 
 fn states(plan: &Plan, policy: &Policy, with_values: bool) -> Result<Vec<StateRow>> {

@@ -105,7 +105,7 @@ pub fn shot_of(plan: &Plan, seed: u64, phase: Phase, ledger: &Ledger, step: usiz
     }
     let mut playback = Playback::new(plan, seed, phase, ledger)?;
     playback.seek(step)?;
-    let Some(reasons) = StepReasons::of_next(plan, ledger, &mut playback)? else { return Ok(None) };
+    let Some(reasons) = StepReasons::of_next(&mut playback)? else { return Ok(None) };
     let ranges_m = &playback.cycle().observation().scan.ranges_m;
     let scan_mm = ranges_m.iter().map(|range_m| (range_m * 1000.0).round() as u32).collect();
     let shot = ShotMaker { plan, seed, phase }.shot(&playback, reasons)?;

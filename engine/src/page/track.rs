@@ -81,11 +81,25 @@ impl Source<'_> {
     pub(super) fn track(&self, moments: Moments) -> Result<(Track, Vec<Shot>)> {
         let spans = spans(self.ledger.len());
         let mut columns = Columns::default();
+        let names = self.names_of_legs();
         for step in spans.iter().flat_map(|[from, to]| *from..*to) {
-            columns.add(self, step);
+            let places = names.iter().rev().find(|(from, _)| *from <= step).map(|(_, places)| places.as_slice());
+            columns.add(self, step, places.unwrap_or_default());
         }
         let shots = self.play(moments, &spans, &mut columns)?;
         Ok((columns.finish(self.ledger.steps(), spans), shots))
+    }
+
+    /// By leg of the phase: its first step, and where each of its rules stands among the plan's own.
+    fn names_of_legs(&self) -> Vec<(usize, Vec<Option<usize>>)> {
+        let own = self.plan.behaviour.rules();
+        let place = |name: &str| own.iter().position(|rule| rule.name == name);
+        let places = |plan: &Plan| plan.behaviour.rules().iter().map(|rule| place(&rule.name)).collect();
+        if self.phase == Phase::Test {
+            return vec![(0, places(self.plan))];
+        }
+        let swaps = self.plan.swaps().map(|(from, _, plan, _)| (from as usize, places(plan)));
+        std::iter::once((0, places(self.plan.first_leg()))).chain(swaps).collect()
     }
 
     /// Plays the steps again for what is not recorded: scans and pictures.
@@ -98,7 +112,7 @@ impl Source<'_> {
         let (mut shots, mut wanted) = (Vec::new(), wanted.into_iter().peekable());
         for step in 0..until {
             if wanted.next_if_eq(&step).is_some() {
-                let Some(reasons) = StepReasons::of_next(self.plan, self.ledger, &mut playback)? else { break };
+                let Some(reasons) = StepReasons::of_next(&mut playback)? else { break };
                 shots.push(maker.shot(&playback, reasons)?);
             } else if playback.advance()?.is_none() {
                 break;
@@ -115,7 +129,7 @@ impl Source<'_> {
 }
 
 impl Columns {
-    fn add(&mut self, source: &Source<'_>, step: usize) {
+    fn add(&mut self, source: &Source<'_>, step: usize, places: &[Option<usize>]) {
         let Some(record) = source.ledger.record(step) else { return };
         let place = |metres: f64| short(metres / source.unit_m);
         self.x.extend(place(record.pose.x_m));
@@ -129,7 +143,8 @@ impl Columns {
         self.reward.extend((record.reward as f32).to_le_bytes());
         let from = self.fired.len();
         self.fired.resize(from + source.plan.behaviour.rules().len().div_ceil(8), 0);
-        for (rule, _) in source.ledger.fired(step) {
+        let rules = source.ledger.fired(step).filter_map(|(rule, _)| *places.get(rule)?);
+        for rule in rules {
             self.fired[from + rule / 8] |= 1 << (rule % 8);
         }
         self.beam.extend(record.beam.unwrap_or(u16::MAX).to_le_bytes());

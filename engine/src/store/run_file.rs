@@ -11,15 +11,19 @@ use toml::Table;
 use super::members::members_from_texts;
 use super::{policy_from_toml, read_stored, toml_error};
 use crate::diagnostic::{Diagnostic, Kind, Result, SourceText, printable};
-use crate::experiment::{Member, Plan};
+use crate::experiment::{Leg, Member, Plan};
 use crate::filter::Catalogue;
 use crate::geometry::Twist;
-use crate::learner::Policy;
+use crate::learner::{Carry, Policy};
 use crate::reward::Behaviour;
 use crate::settings::{FilterSettings, SETTINGS, Settings, Value, apply};
 use crate::world::Layout;
 
 const FORMAT: u32 = 1;
+/// The format of a run whose reward was swapped while it learned.
+const FORMAT_OF_LEGS: u32 = 2;
+/// As many as `run.steps` may be.
+const MOST_LEG_STEPS: u64 = 1_000_000_000;
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -36,6 +40,20 @@ struct RunFile {
     /// Of a combination: the policies, in the order of the script.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     policy: Vec<TextEntry>,
+    /// What was learned before under other scripts, in order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    leg: Vec<LegEntry>,
+}
+
+/// Learning under one script, until the reward was swapped. Only rules and the learner's settings may differ from leg to leg.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LegEntry {
+    steps: u64,
+    /// What became of the table then.
+    table: Carry,
+    settings: Table,
+    script: TextEntry,
 }
 
 /// A filter stage with the parameters that were set.
@@ -119,6 +137,31 @@ fn sha256(text: &str) -> String {
 /// Never in practice: only if the settings cannot be written as TOML.
 pub fn run_to_toml(plan: &Plan, members: &[Member], seed: u64) -> Result<String> {
     let settings = &plan.settings;
+    let legs = plan.earlier.iter().map(|leg| LegEntry {
+        steps: leg.steps,
+        table: leg.then,
+        settings: settings_table(&leg.plan.settings),
+        script: TextEntry::new(leg.plan.behaviour.source()),
+    });
+    let file = RunFile {
+        format: if plan.earlier.is_empty() { FORMAT } else { FORMAT_OF_LEGS },
+        engine: env!("CARGO_PKG_VERSION").to_owned(),
+        behaviour: plan.behaviour.name().to_owned(),
+        seed,
+        actions: settings.actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
+        filters: settings.filters.iter().map(|filter| FilterEntry::new(filter, &plan.filters)).collect(),
+        settings: settings_table(settings),
+        script: TextEntry::new(plan.behaviour.source()),
+        world: TextEntry::new(&plan.layout.source),
+        policy: members.iter().map(|member| TextEntry::new(&member.source)).collect(),
+        leg: legs.collect(),
+    };
+    toml::to_string_pretty(&file).map_err(|error| {
+        Box::new(Diagnostic::new(Kind::State, "E-RUN-FILE", format!("the settings cannot be written: {error}")))
+    })
+}
+
+fn settings_table(settings: &Settings) -> Table {
     let mut table = Table::new();
     for row in SETTINGS {
         let group = table.entry(row.group).or_insert_with(|| toml::Value::Table(Table::new()));
@@ -131,21 +174,7 @@ pub fn run_to_toml(plan: &Plan, members: &[Member], seed: u64) -> Result<String>
             group.insert(row.key.to_owned(), value);
         }
     }
-    let file = RunFile {
-        format: FORMAT,
-        engine: env!("CARGO_PKG_VERSION").to_owned(),
-        behaviour: plan.behaviour.name().to_owned(),
-        seed,
-        actions: settings.actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
-        filters: settings.filters.iter().map(|filter| FilterEntry::new(filter, &plan.filters)).collect(),
-        settings: table,
-        script: TextEntry::new(plan.behaviour.source()),
-        world: TextEntry::new(&plan.layout.source),
-        policy: members.iter().map(|member| TextEntry::new(&member.source)).collect(),
-    };
-    toml::to_string_pretty(&file).map_err(|error| {
-        Box::new(Diagnostic::new(Kind::State, "E-RUN-FILE", format!("the settings cannot be written: {error}")))
-    })
+    table
 }
 
 /// A run read back from its folder.
@@ -182,16 +211,36 @@ impl StoredRun {
     pub fn load_with(folder: &Path, filters: Arc<Catalogue>) -> Result<Self> {
         let source = read_stored(&folder.join("run.toml"))?;
         let file: RunFile = toml::from_str(&source.text).map_err(|error| toml_error(&source, &error))?;
-        if file.format != FORMAT {
-            let message =
-                format!("'{}' has format {}, this engine reads format {FORMAT}", source.path.display(), file.format);
+        if file.format != if file.leg.is_empty() { FORMAT } else { FORMAT_OF_LEGS } {
+            let message = format!(
+                "'{}' has format {} and {} earlier legs; this engine reads format {FORMAT} without, {FORMAT_OF_LEGS} with",
+                source.path.display(),
+                file.format,
+                file.leg.len()
+            );
             return Diagnostic::new(Kind::State, "E-RUN-FILE", message).into();
         }
-        let behaviour = Arc::new(Behaviour::parse(&file.behaviour, file.script.check(&source)?)?);
         let layout = Arc::new(Layout::parse(file.world.check(&source)?)?);
-        let settings = settings(&source, behaviour.settings(), &file)?;
         file.filters.iter().try_for_each(|filter| filter.check(&filters))?;
-        let plan = Plan::with_layout(behaviour, settings, layout, filters)?;
+        let plan_of = |script: &TextEntry, table: &Table| {
+            let behaviour = Arc::new(Behaviour::parse(&file.behaviour, script.check(&source)?)?);
+            let settings = settings(&source, behaviour.settings(), &file, table)?;
+            Plan::with_layout(behaviour, settings, Arc::clone(&layout), Arc::clone(&filters))
+        };
+        let plan = plan_of(&file.script, &file.settings)?;
+        let leg = |leg: &LegEntry| {
+            if leg.steps > MOST_LEG_STEPS {
+                let message = format!("'{}' has a leg of {} steps", source.path.display(), leg.steps);
+                return Diagnostic::new(Kind::State, "E-RUN-FILE", message).help("run the behaviour again").into();
+            }
+            let earlier = plan_of(&leg.script, &leg.settings)?;
+            match plan.differs_beyond_reward(&earlier) {
+                None => Ok(Leg { plan: earlier, steps: leg.steps, then: leg.table }),
+                Some(what) => Err(Box::new(not_one_run(&source, &what))),
+            }
+        };
+        let legs = file.leg.iter().map(leg).collect::<Result<Vec<_>>>()?;
+        let plan = plan.after(legs);
         let decider = if plan.settings.policies.is_empty() {
             let states = plan.grid()?.states();
             let policy = read_stored(&folder.join("policy.toml"))?;
@@ -204,11 +253,16 @@ impl StoredRun {
     }
 }
 
-fn settings(source: &SourceText, written: &Settings, file: &RunFile) -> Result<Settings> {
+fn not_one_run(source: &SourceText, what: &str) -> Diagnostic {
+    let message = format!("the legs of '{}' differ in {what}: only the reward may change", source.path.display());
+    Diagnostic::new(Kind::State, "E-RUN-FILE", message).help("run the behaviour again")
+}
+
+fn settings(source: &SourceText, written: &Settings, file: &RunFile, table: &Table) -> Result<Settings> {
     let mut settings = written.clone();
     settings.actions = file.actions.iter().map(|[linear, angular]| Twist::new(*linear, *angular)).collect();
     settings.filters = file.filters.iter().map(FilterEntry::settings).collect();
-    for (group, keys) in &file.settings {
+    for (group, keys) in table {
         for (key, value) in keys.as_table().into_iter().flatten() {
             let value = match value {
                 toml::Value::Boolean(flag) => Value::Flag(*flag),

@@ -5,9 +5,12 @@
 //! | 8 | [`MAGIC`] |
 //! | 4 | format, little-endian like every number here |
 //! | 4 | length of the header |
-//! | that many | the header, JSON: engine, behaviour, seed, digest of `run.toml`, rules, bytes of a record, counts of both phases |
+//! | that many | the header, JSON: engine, behaviour, seed, digest of `run.toml`, rules, bytes of a record, counts of both phases, and `earlier`: the same of each leg before the reward was swapped |
 //! | 32 | SHA-256 of all before |
-//! | chunks | up to 1,024 records of learning, then 32 bytes: SHA-256 of the digest of the chunk before and these records; the test follows in the same way |
+//! | chunks | up to 1,024 records of learning, then 32 bytes: SHA-256 of the digest of the chunk before and these records; each leg begins a chunk of its own; the test follows in the same way |
+//!
+//! The format is 1, and 2 if there are earlier legs. A swap is so an event in the log: it comes after as many steps as the
+//! legs before it have; what became of the table stands with the script in `run.toml`.
 //!
 //! The chain of digests begins with 32 zeros and ends as `log_sha256` in `summary.json`. All sizes follow from the header,
 //! so chunk `n` of learning begins at `48 + header + n * (1,024 * record + 32)`, and each chunk can be checked by itself. A
@@ -32,6 +35,8 @@ pub const LOG_FILE: &str = "log.bin";
 /// How the file begins.
 pub const MAGIC: [u8; 8] = *b"engnlog\n";
 const FORMAT: u32 = 1;
+/// The format of a log with more than one leg.
+const FORMAT_OF_LEGS: u32 = 2;
 /// Records in a chunk; the last of a phase may have fewer.
 const CHUNK_STEPS: usize = 1024;
 const DIGEST_BYTES: usize = 32;
@@ -56,8 +61,19 @@ struct Header {
     run_sha256: String,
     record_bytes: usize,
     rules: Vec<RuleEntry>,
+    /// Learning before the reward was swapped for the last time.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    earlier: Vec<LegEntry>,
     learning: PhaseEntry,
     test: PhaseEntry,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LegEntry {
+    record_bytes: usize,
+    rules: Vec<RuleEntry>,
+    learning: PhaseEntry,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -77,8 +93,16 @@ struct PhaseEntry {
 }
 
 impl PhaseEntry {
-    fn of(ledger: &Ledger) -> Self {
-        Self { steps: ledger.steps(), records: ledger.len() }
+    fn of_last_leg(ledger: &Ledger) -> Self {
+        let (steps, records) = ledger.last_leg();
+        Self { steps, records }
+    }
+}
+
+impl RuleEntry {
+    fn all(plan: &Plan) -> Vec<Self> {
+        let rules = plan.behaviour.rules().iter().enumerate();
+        rules.map(|(index, rule)| Self { name: rule.name.clone(), value: plan.behaviour.fixed_value(index) }).collect()
     }
 }
 
@@ -88,7 +112,7 @@ impl RunLog {
     pub fn new(plan: &Plan) -> Self {
         let run = &plan.settings.run;
         let learns = plan.settings.policies.is_empty();
-        let learning = Ledger::new(plan, if learns { run.steps } else { 0 });
+        let learning = Ledger::new(plan.first_leg(), if learns { plan.first_steps() } else { 0 });
         Self { learning, test: Ledger::new(plan, run.test_steps) }
     }
 
@@ -101,7 +125,8 @@ impl RunLog {
     /// The chunks of both phases, each with its digest.
     fn chunks(&self) -> impl Iterator<Item = (&[u8], [u8; DIGEST_BYTES])> {
         let phases = [&self.learning, &self.test].into_iter();
-        let chunks = phases.flat_map(|ledger| ledger.bytes().chunks(CHUNK_STEPS * ledger.shape().bytes()));
+        let legs = phases.flat_map(Ledger::legs);
+        let chunks = legs.flat_map(|(shape, bytes)| bytes.chunks(CHUNK_STEPS * shape.bytes()));
         chunks.scan([0; DIGEST_BYTES], |before, records| {
             *before = digest(before, records);
             Some((records, *before))
@@ -113,24 +138,30 @@ impl RunLog {
     /// # Errors
     /// Never in practice: only if the header cannot be written as JSON.
     pub fn to_bytes(&self, plan: &Plan, seed: u64, run: &str) -> Result<Vec<u8>> {
-        let rules = plan.behaviour.rules().iter().enumerate();
+        let legs = plan.earlier.iter().zip(self.learning.earlier());
+        let earlier = legs.map(|(leg, records)| LegEntry {
+            record_bytes: records.shape.bytes(),
+            rules: RuleEntry::all(&leg.plan),
+            learning: PhaseEntry { steps: records.steps, records: records.len() },
+        });
         let header = Header {
             engine: env!("CARGO_PKG_VERSION").to_owned(),
             behaviour: plan.behaviour.name().to_owned(),
             seed,
             run_sha256: hex(&Sha256::digest(run.as_bytes())),
             record_bytes: self.learning.shape().bytes(),
-            rules: rules
-                .map(|(index, rule)| RuleEntry { name: rule.name.clone(), value: plan.behaviour.fixed_value(index) })
-                .collect(),
-            learning: PhaseEntry::of(&self.learning),
-            test: PhaseEntry::of(&self.test),
+            rules: RuleEntry::all(plan),
+            earlier: earlier.collect(),
+            learning: PhaseEntry::of_last_leg(&self.learning),
+            test: PhaseEntry::of_last_leg(&self.test),
         };
+        let format = if header.earlier.is_empty() { FORMAT } else { FORMAT_OF_LEGS };
         let text = serde_json::to_vec(&header)
             .map_err(|error| Box::new(damaged(format!("the log's header cannot be written: {error}"))))?;
-        let mut file = Vec::with_capacity(self.learning.bytes().len() + self.test.bytes().len() + text.len() + 4096);
+        let records: usize = self.chunks().map(|(records, digest)| records.len() + digest.len()).sum();
+        let mut file = Vec::with_capacity(records + text.len() + 4096);
         file.extend_from_slice(&MAGIC);
-        file.extend_from_slice(&FORMAT.to_le_bytes());
+        file.extend_from_slice(&format.to_le_bytes());
         file.extend_from_slice(&(text.len() as u32).to_le_bytes());
         file.extend_from_slice(&text);
         let all_before = Sha256::digest(&file);

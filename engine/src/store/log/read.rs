@@ -1,8 +1,11 @@
 //! A log file read back: nothing in it is believed before it is checked.
 
-use super::{CHUNK_STEPS, DIGEST_BYTES, FORMAT, Header, MAGIC, PREFIX_BYTES, PhaseEntry, RunLog, damaged, digest, hex};
+use super::{
+    CHUNK_STEPS, DIGEST_BYTES, FORMAT, FORMAT_OF_LEGS, Header, MAGIC, PREFIX_BYTES, PhaseEntry, RuleEntry, RunLog,
+    damaged, digest, hex,
+};
 use crate::diagnostic::{Diagnostic, Kind, Result, printable};
-use crate::experiment::{Ledger, MOST_STEPS, Plan, Record, RecordShape};
+use crate::experiment::{Ledger, LedgerLeg, MOST_STEPS, Plan, Record, RecordShape};
 use sha2::{Digest, Sha256};
 
 /// Reads the bytes of a log that must belong to a plan under a seed, whose `run.toml` has the text `run`.
@@ -19,23 +22,52 @@ pub fn read_log(bytes: &[u8], plan: &Plan, seed: u64, run: &str) -> Result<RunLo
             .help("keep log.bin and run.toml of one run together")
             .into();
     }
-    let shape = RecordShape::of(plan);
-    let is_fixed = |value: &Option<f64>| value.is_some();
-    let written = header.rules.iter().map(|rule| is_fixed(&rule.value));
-    if header.record_bytes != shape.bytes() || !written.eq(shape.values().iter().map(is_fixed)) {
-        return damaged("the log's records do not fit the rules of its run".to_owned()).into();
+    let stretches = stretches(&header, plan)?;
+    check_length(&stretches, body)?;
+    let (mut before, mut rest, mut legs) = ([0; DIGEST_BYTES], body, Vec::new());
+    for Stretch { name, phase, shape } in stretches {
+        let bytes = phase_records(&mut rest, phase, shape.bytes(), &mut before, name)?;
+        legs.push(LedgerLeg { shape, bytes, steps: phase.steps });
     }
-    check_length(&header, body)?;
-    let mut before = [0; DIGEST_BYTES];
-    let mut rest = body;
-    let [learning, test] = [("learning", header.learning), ("the test", header.test)].map(|(name, phase)| {
-        let records = phase_records(&mut rest, phase, header.record_bytes, &mut before, name)?;
-        let ledger = Ledger::from_bytes(shape.clone(), records, phase.steps);
-        ledger.ok_or_else(|| Box::new(damaged("the log's counts do not fit its records".to_owned())))
-    });
-    let log = RunLog { learning: learning?, test: test? };
+    let test = legs.pop().and_then(|leg| Ledger::from_legs(vec![leg]));
+    let Some((learning, test)) = Ledger::from_legs(legs).zip(test) else {
+        return damaged("the log's counts do not fit its records".to_owned()).into();
+    };
+    let log = RunLog { learning, test };
     check_records(&log, plan)?;
     Ok(log)
+}
+
+/// Records that lie in one way, one after the other.
+struct Stretch {
+    name: &'static str,
+    phase: PhaseEntry,
+    shape: RecordShape,
+}
+
+/// Each leg of learning, then the test; every one as the plan says it must be.
+fn stretches(header: &Header, plan: &Plan) -> Result<Vec<Stretch>> {
+    let stretch = |name, plan: &Plan, rules: &[RuleEntry], record_bytes: usize, phase: PhaseEntry| {
+        let shape = RecordShape::of(plan);
+        let is_fixed = |value: &Option<f64>| value.is_some();
+        let written = rules.iter().map(|rule| is_fixed(&rule.value));
+        if record_bytes != shape.bytes() || !written.eq(shape.values().iter().map(is_fixed)) {
+            return Err(Box::new(damaged("the log's records do not fit the rules of its run".to_owned())));
+        }
+        Ok(Stretch { name, phase, shape })
+    };
+    let legs = || header.earlier.iter().zip(&plan.earlier);
+    let counts_fit = legs().all(|(entry, leg)| entry.learning.steps == leg.steps);
+    if header.earlier.len() != plan.earlier.len() || !counts_fit {
+        return damaged("the log's legs are not those of its run".to_owned()).into();
+    }
+    let mut all = Vec::new();
+    for (entry, leg) in legs() {
+        all.push(stretch("learning", &leg.plan, &entry.rules, entry.record_bytes, entry.learning)?);
+    }
+    all.push(stretch("learning", plan, &header.rules, header.record_bytes, header.learning)?);
+    all.push(stretch("the test", plan, &header.rules, header.record_bytes, header.test)?);
+    Ok(all)
 }
 
 fn header(bytes: &[u8]) -> Result<(Header, &[u8])> {
@@ -46,8 +78,8 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8])> {
     if bytes[..8] != MAGIC {
         return damaged("this file is not a log of a run".to_owned()).into();
     }
-    if format != FORMAT {
-        let message = format!("the log has format {format}, this engine reads format {FORMAT}");
+    if ![FORMAT, FORMAT_OF_LEGS].contains(&format) {
+        let message = format!("the log has format {format}, this engine reads formats {FORMAT} and {FORMAT_OF_LEGS}");
         let error = Diagnostic::new(Kind::State, "E-LOG-FILE", message);
         return error.help("read it with the engine that wrote it, or run the behaviour again").into();
     }
@@ -58,8 +90,11 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8])> {
     if Sha256::digest(all_before).as_slice() != sum {
         return damaged("the log's header does not match its checksum".to_owned()).into();
     }
-    let header = serde_json::from_slice(&all_before[PREFIX_BYTES..])
+    let header: Header = serde_json::from_slice(&all_before[PREFIX_BYTES..])
         .map_err(|error| Box::new(damaged(format!("the log's header cannot be read: {error}"))))?;
+    if header.earlier.is_empty() != (format == FORMAT) {
+        return damaged(format!("a log of format {format} cannot have {} earlier legs", header.earlier.len())).into();
+    }
     Ok((header, &bytes[end + DIGEST_BYTES..]))
 }
 
@@ -70,12 +105,13 @@ fn phase_bytes(phase: PhaseEntry, record_bytes: usize) -> Option<usize> {
     possible.then_some(phase.records)?.checked_mul(record_bytes)?.checked_add(digests)
 }
 
-fn check_length(header: &Header, body: &[u8]) -> Result<()> {
-    let wanted = |phase| phase_bytes(phase, header.record_bytes);
-    let Some((learning, test)) = wanted(header.learning).zip(wanted(header.test)) else {
+fn check_length(stretches: &[Stretch], body: &[u8]) -> Result<()> {
+    let wanted = stretches
+        .iter()
+        .try_fold(0_usize, |sum, Stretch { phase, shape, .. }| sum.checked_add(phase_bytes(*phase, shape.bytes())?));
+    let Some(wanted) = wanted else {
         return damaged("the log's header counts more steps than a log can hold".to_owned()).into();
     };
-    let wanted = learning.saturating_add(test);
     if body.len() == wanted {
         return Ok(());
     }

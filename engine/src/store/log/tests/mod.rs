@@ -6,9 +6,11 @@ use std::sync::{Arc, LazyLock};
 use proptest::prelude::*;
 use sha2::{Digest, Sha256};
 
+mod legs;
+
 use super::{DIGEST_BYTES, PREFIX_BYTES, RunLog, read_log};
 use crate::diagnostic::{Kind, Result, SourceText};
-use crate::experiment::{Ledger, Plan, learn_into, test_into};
+use crate::experiment::{Ledger, LedgerLeg, Plan, learn_into, test_into};
 use crate::filter::Catalogue;
 use crate::reward::Behaviour;
 use crate::world::Layout;
@@ -43,6 +45,14 @@ static SAMPLE: LazyLock<Sample> = LazyLock::new(|| {
     Sample { plan, log, file }
 });
 
+fn ledger(bytes: Vec<u8>, steps: u64) -> Ledger {
+    Ledger::from_legs(vec![LedgerLeg { shape: SAMPLE.log.test.shape().clone(), bytes, steps }]).unwrap()
+}
+
+fn bytes_of(ledger: &Ledger) -> Vec<u8> {
+    ledger.legs().next().unwrap().1.to_vec()
+}
+
 fn read(bytes: &[u8]) -> Result<RunLog> {
     read_log(bytes, &SAMPLE.plan, SEED, RUN)
 }
@@ -75,8 +85,7 @@ fn a_log_comes_back_as_it_was_written() {
 
 #[test]
 fn a_log_that_holds_only_the_beginning_of_a_run_knows_how_long_the_run_was() {
-    let (shape, bytes) = (SAMPLE.log.learning.shape().clone(), SAMPLE.log.learning.bytes().to_vec());
-    let learning = Ledger::from_bytes(shape, bytes, 9_000_000).unwrap();
+    let learning = ledger(bytes_of(&SAMPLE.log.learning), 9_000_000);
     let file = RunLog { learning, test: SAMPLE.log.test.clone() }.to_bytes(&SAMPLE.plan, SEED, RUN).unwrap();
     let read = read(&file).unwrap().learning;
     assert_eq!((read.len(), read.steps()), (1200, 9_000_000));
@@ -116,8 +125,8 @@ fn a_changed_record_is_named_by_its_steps() {
 #[test]
 fn another_format_is_said_with_both_numbers() {
     let mut file = SAMPLE.file.clone();
-    file[8] = 2;
-    assert_eq!(message(&file), "the log has format 2, this engine reads format 1");
+    file[8] = 3;
+    assert_eq!(message(&file), "the log has format 3, this engine reads formats 1 and 2");
 }
 
 #[test]
@@ -143,9 +152,9 @@ fn counts_that_no_file_can_hold_are_refused_before_anything_is_made_for_them() {
 
 #[test]
 fn a_state_that_the_grid_does_not_have_is_refused_even_with_a_checksum_that_fits() {
-    let mut bytes = SAMPLE.log.test.bytes().to_vec();
+    let mut bytes = bytes_of(&SAMPLE.log.test);
     bytes[88 * 7 + 32..][..4].copy_from_slice(&64_u32.to_le_bytes());
-    let test = Ledger::from_bytes(SAMPLE.log.test.shape().clone(), bytes, 40).unwrap();
+    let test = ledger(bytes, 40);
     let log = RunLog { learning: SAMPLE.log.learning.clone(), test };
     let file = log.to_bytes(&SAMPLE.plan, SEED, RUN).unwrap();
     assert_eq!(message(&file), "step 7 of the test in the log is not one that the run can have done");
@@ -172,7 +181,7 @@ proptest! {
     fn records_of_any_bytes_with_checksums_that_fit_are_read_or_refused(
         bytes in proptest::collection::vec(any::<u8>(), 88 * 3),
     ) {
-        let test = Ledger::from_bytes(SAMPLE.log.test.shape().clone(), bytes, 3).unwrap();
+        let test = ledger(bytes, 3);
         let log = RunLog { learning: SAMPLE.log.learning.clone(), test };
         let file = log.to_bytes(&SAMPLE.plan, SEED, RUN).unwrap();
         if let Ok(read) = read(&file) {

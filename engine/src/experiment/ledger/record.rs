@@ -1,0 +1,152 @@
+//! One record of a ledger, and how its bytes lie.
+
+use crate::experiment::Plan;
+use crate::geometry::Pose;
+
+/// Bytes of a record before the words of the rules.
+pub(super) const FIXED_BYTES: usize = 72;
+/// Where each field of a record begins.
+const FIELDS: &[(usize, &str)] = &[
+    (0, "reward"),
+    (8, "x"),
+    (16, "y"),
+    (24, "yaw"),
+    (32, "state"),
+    (36, "next state"),
+    (40, "action"),
+    (42, "flags"),
+    (44, "beam of the rule"),
+    (46, "nearest beam"),
+    (48, "nearest range"),
+    (52, "height"),
+    (56, "prey"),
+    (68, "coverage"),
+    (FIXED_BYTES, "values of the rules"),
+];
+const NO_BEAM: u16 = u16::MAX;
+
+/// One step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Record {
+    /// The sum of what the rules added.
+    pub reward: f64,
+    /// The true pose at the end of the step, before any recovery.
+    pub pose: Pose,
+    /// The height of the robot's own ground at the end, metres.
+    pub z_m: f32,
+    /// The true pose of the prey at the end: metres, metres, radians.
+    pub prey: Option<[f32; 3]>,
+    /// The state in which the action was chosen.
+    pub state: u32,
+    /// The state at the end.
+    pub next_state: u32,
+    /// The action.
+    pub action: u16,
+    /// The script asked for recovery: the next step begins somewhere else.
+    pub recover: bool,
+    /// The body touched something.
+    pub contact: bool,
+    /// The robot lost its footing.
+    pub fallen: bool,
+    /// The action was not the best known one of its state.
+    pub explored: bool,
+    /// The beam behind the last rule that fired.
+    pub beam: Option<u16>,
+    /// The beam with the least range.
+    pub nearest_beam: u16,
+    /// The least range, metres.
+    pub nearest_m: f32,
+    /// Share of the image that the filters left, 0 to 1.
+    pub coverage: f32,
+}
+
+/// How the records of one behaviour lie in memory and in the log file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordShape {
+    /// For each rule, and `fn reward` last, what it adds whenever it fires; nothing where each record holds its own value.
+    values: Vec<Option<f64>>,
+}
+
+impl RecordShape {
+    /// The shape for rules with these fixed values.
+    #[must_use]
+    pub fn new(values: Vec<Option<f64>>) -> Self {
+        Self { values }
+    }
+
+    /// The shape for a behaviour.
+    #[must_use]
+    pub fn of(plan: &Plan) -> Self {
+        Self::new((0..plan.behaviour.rules().len()).map(|rule| plan.behaviour.fixed_value(rule)).collect())
+    }
+
+    /// Bytes of one record: 72, 8 for each 64 rules, 8 for each value that is not fixed.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        FIXED_BYTES + 8 * (self.words() + self.values.iter().filter(|value| value.is_none()).count())
+    }
+
+    /// The fixed values.
+    #[must_use]
+    pub fn values(&self) -> &[Option<f64>] {
+        &self.values
+    }
+
+    /// Words of 64 rules, a bit for each.
+    pub(super) fn words(&self) -> usize {
+        self.values.len().div_ceil(64)
+    }
+}
+
+impl Record {
+    pub(super) fn to_bytes(self) -> [u8; FIXED_BYTES] {
+        let prey = self.prey.unwrap_or_default();
+        let flags = [self.recover, self.contact, self.fallen, self.explored, self.prey.is_some()];
+        let flags = flags.iter().enumerate().fold(0_u16, |set, (bit, flag)| set | u16::from(*flag) << bit);
+        let mut bytes = [0; FIXED_BYTES];
+        let wide = [self.reward, self.pose.x_m, self.pose.y_m, self.pose.yaw_rad].map(f64::to_le_bytes);
+        bytes[0..32].copy_from_slice(wide.as_flattened());
+        bytes[32..40].copy_from_slice([self.state, self.next_state].map(u32::to_le_bytes).as_flattened());
+        let small = [self.action, flags, self.beam.unwrap_or(NO_BEAM), self.nearest_beam].map(u16::to_le_bytes);
+        bytes[40..48].copy_from_slice(small.as_flattened());
+        let narrow = [self.nearest_m, self.z_m, prey[0], prey[1], prey[2], self.coverage].map(f32::to_le_bytes);
+        bytes[48..72].copy_from_slice(narrow.as_flattened());
+        bytes
+    }
+
+    pub(super) fn from_bytes(bytes: &[u8; FIXED_BYTES]) -> Self {
+        let (wide, _) = bytes[0..32].as_chunks();
+        let [reward, x_m, y_m, yaw_rad] = [0, 1, 2, 3].map(|index| f64::from_le_bytes(wide[index]));
+        let (states, _) = bytes[32..40].as_chunks();
+        let (small, _) = bytes[40..48].as_chunks();
+        let [action, flags, beam, nearest_beam] = [0, 1, 2, 3].map(|index| u16::from_le_bytes(small[index]));
+        let (narrow, _) = bytes[48..72].as_chunks();
+        let [nearest_m, z_m, x, y, yaw, coverage] = [0, 1, 2, 3, 4, 5].map(|index| f32::from_le_bytes(narrow[index]));
+        let flag = |bit: u16| flags >> bit & 1 == 1;
+        Self {
+            reward,
+            pose: Pose { x_m, y_m, yaw_rad },
+            z_m,
+            prey: flag(4).then_some([x, y, yaw]),
+            state: u32::from_le_bytes(states[0]),
+            next_state: u32::from_le_bytes(states[1]),
+            action,
+            recover: flag(0),
+            contact: flag(1),
+            fallen: flag(2),
+            explored: flag(3),
+            beam: (beam != NO_BEAM).then_some(beam),
+            nearest_beam,
+            nearest_m,
+            coverage,
+        }
+    }
+}
+
+/// The name of the field that the byte `at` of a record belongs to.
+pub(super) fn first_field(at: usize, shape: &RecordShape) -> &'static str {
+    if (FIXED_BYTES..FIXED_BYTES + 8 * shape.words()).contains(&at) {
+        return "rules that fired";
+    }
+    FIELDS.iter().rev().find(|(from, _)| *from <= at).map_or("size", |(_, name)| name)
+}

@@ -1,0 +1,124 @@
+//! Learning in legs: the reward was swapped while the robot learned, and the robot went on.
+//!
+//! A plan with earlier legs means: learn under these first, each for its steps, then under the plan itself. So all that
+//! learns, replays or stores a plan does the swaps at the same steps again, bit for bit.
+
+use super::Plan;
+use crate::learner::Carry;
+use crate::settings::{SETTINGS, Settings};
+
+/// A part of learning under one script, before the reward was swapped.
+#[derive(Clone)]
+pub struct Leg {
+    /// Its script with its settings; it has no earlier legs.
+    pub plan: Plan,
+    /// Steps that were learned under it.
+    pub steps: u64,
+    /// What became of the table at its end.
+    pub then: Carry,
+}
+
+impl Plan {
+    /// The same plan after these legs.
+    #[must_use]
+    pub fn after(self, earlier: Vec<Leg>) -> Self {
+        Self { earlier, ..self }
+    }
+
+    /// The plan under which learning begins.
+    #[must_use]
+    pub fn first_leg(&self) -> &Self {
+        self.earlier.first().map_or(self, |leg| &leg.plan)
+    }
+
+    /// The swaps in their order: the step before which it happens, what becomes of the table, the plan from there on, and
+    /// the steps that this one is to be learned for.
+    pub fn swaps(&self) -> impl Iterator<Item = (u64, Carry, &Self, u64)> {
+        let last = (self, self.settings.run.steps);
+        let after = self.earlier.iter().skip(1).map(|leg| (&leg.plan, leg.steps)).chain([last]);
+        self.earlier.iter().zip(after).scan(0, |before, (leg, (plan, steps))| {
+            *before += leg.steps;
+            Some((*before, leg.then, plan, steps))
+        })
+    }
+
+    /// Steps of the first leg.
+    #[must_use]
+    pub fn first_steps(&self) -> u64 {
+        self.earlier.first().map_or(self.settings.run.steps, |leg| leg.steps)
+    }
+
+    /// Steps of all earlier legs.
+    #[must_use]
+    pub fn earlier_steps(&self) -> u64 {
+        self.earlier.iter().map(|leg| leg.steps).sum()
+    }
+
+    /// Steps of learning, in all legs.
+    #[must_use]
+    pub fn learning_steps(&self) -> u64 {
+        self.earlier_steps() + self.settings.run.steps
+    }
+
+    /// The plan under which a step of learning was done.
+    #[must_use]
+    pub fn leg_of(&self, step: u64) -> &Self {
+        self.swaps().take_while(|(from, ..)| *from <= step).last().map_or(self.first_leg(), |(_, _, plan, _)| plan)
+    }
+
+    /// The names of all rules: the plan's own in their order, then those that only earlier legs had.
+    #[must_use]
+    pub fn rule_names(&self) -> Vec<String> {
+        let own = self.behaviour.rules().iter().map(|rule| rule.name.clone()).collect();
+        // The latest of the gone ones first, as a learner's counts have them.
+        self.earlier.iter().rev().fold(own, |names, leg| with_gone(names, leg.plan.own_rule_names()))
+    }
+
+    pub(super) fn own_rule_names(&self) -> impl Iterator<Item = String> {
+        self.behaviour.rules().iter().map(|rule| rule.name.clone())
+    }
+
+    /// In which of the things that a robot sees or does a plan differs from another, in words; nothing if only rules, the
+    /// learner's settings and the numbers of steps do, so that learning can go on from one to the other.
+    #[must_use]
+    pub fn differs_beyond_reward(&self, other: &Self) -> Option<String> {
+        let digests = |plan: &Self| -> Vec<Option<String>> {
+            let entries = plan.settings.filters.iter().map(|filter| plan.filters.find(&filter.name).ok());
+            entries.map(|entry| entry.and_then(|entry| entry.sha256.clone())).collect()
+        };
+        let same_world = other.layout.source.text == self.layout.source.text;
+        let fixed = first_fixed_difference(&other.settings, &self.settings).map(|(what, _)| what);
+        fixed
+            .or_else(|| (!same_world).then(|| "the world".to_owned()))
+            .or_else(|| (digests(other) != digests(self)).then(|| "the filters".to_owned()))
+    }
+}
+
+/// Names, and those of `others` that are not among them.
+pub(super) fn with_gone(mut names: Vec<String>, others: impl Iterator<Item = String>) -> Vec<String> {
+    for name in others {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+/// Whether a setting may change while a robot learns, and a recorded run may be judged again under another value of it.
+pub(super) fn may_swap(group: &str, key: &str) -> bool {
+    group == "learner" || (group == "run" && key != "period_s")
+}
+
+/// The first of the settings that may not change, with the place that sets it.
+pub(super) fn first_fixed_difference(old: &Settings, new: &Settings) -> Option<(String, String)> {
+    let row = SETTINGS.iter().find(|row| !may_swap(row.group, row.key) && (row.get)(old) != (row.get)(new));
+    let row = row.map(|row| (row.name(), format!("{}.{}", row.group, row.key)));
+    let parts = [
+        (old.world == new.world, "the world", "world"),
+        (old.filters == new.filters, "the filters", "filter:0"),
+        (old.actions == new.actions, "the actions", "actions"),
+        (old.policies == new.policies, "the policies", "policy:0"),
+    ];
+    let part = || parts.into_iter().find(|(same, ..)| !same);
+    row.or_else(|| part().map(|(_, what, place)| (what.to_owned(), place.to_owned())))
+}

@@ -1,0 +1,32 @@
+//! What becomes of the table when the reward changes while the robot learns.
+
+use serde::{Deserialize, Serialize};
+
+/// What becomes of the table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Carry {
+    /// It stays as it is, visits included: a state that was met often hardly tries anything new.
+    #[default]
+    Keep,
+    /// Values are halved, and so are the visits, of which no more than `learner.cooling_visits` count: what was known goes
+    /// on to lead, but is tried again.
+    Decay,
+    /// It begins again with first values and no visits; only the robot stays where it is.
+    Reset,
+}
+
+impl Carry {
+    /// Every way, as it is written, in the order of what is left of the table.
+    pub const ALL: [(&'static str, Self); 3] = [("keep", Self::Keep), ("decay", Self::Decay), ("reset", Self::Reset)];
+
+    /// How it is written.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Keep => "keep",
+            Self::Decay => "decay",
+            Self::Reset => "reset",
+        }
+    }
+}
