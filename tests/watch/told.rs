@@ -88,5 +88,5 @@ fn a_newer_save_ends_the_older_run() {
     served.bench.write("short.rhai", SCRIPT.replace("steps: 800", "steps: 100000000"));
     message(&mut socket, |said| said["text"].as_str().unwrap().contains("100000000 steps"));
     served.bench.write("short.rhai", SCRIPT);
-    assert_eq!(message(&mut socket, |said| said["kind"] == "run")["save"], 3);
+    assert_eq!(message(&mut socket, |said| said["kind"] == "run" && said["save"] != 2)["save"], 3);
 }

@@ -10,6 +10,8 @@ use super::{FilterSources, count, seed};
 #[command(
     after_help = "The page is served on this computer only, at an address with a secret; nobody else can open it. \
                         A script that is saved with a mistake ends nothing: the page shows the error until the next save.\n\
+                        With --keep, a swap of the reward stands in the log of the run, so that engine replay DIR --verify \
+                        does it again.\n\
                         Exit status: 0 ended with Ctrl-C; 2 usage; 3 bad script to begin with; 4 no free port; \
                         5 refused for trust; 6 files and disk."
 )]
@@ -30,6 +32,14 @@ pub(crate) struct WatchArguments {
     /// How many steps to learn; without it, what the script says
     #[arg(long, value_parser = count, allow_hyphen_values = true, value_name = "N")]
     pub(crate) steps: Option<u64>,
+    /// On a save that changes only the reward, learn on from where the robots are instead of from nothing; of what they
+    /// learned, keep all, let it decay by half, or reset it
+    #[arg(long, value_name = "HOW", num_args = 0..=1, require_equals = true, default_missing_value = "keep",
+          value_parser = ["keep", "decay", "reset"])]
+    pub(crate) keep: Option<String>,
+    /// Write each finished run to this folder, as engine run does; with --keep it is runs/BEHAVIOUR/watch without this
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
     /// Another world: its name, or the path of a world file
     #[arg(long)]
     pub(crate) world: Option<String>,

@@ -24,10 +24,16 @@ pub(crate) fn run(arguments: &WatchArguments, console: &mut Console) -> Result<u
     let sources = arguments.filters.clone();
     let (world, set) = (arguments.world.clone(), arguments.set.clone());
     let board = Arc::new(Board::default());
+    let keep = keep(arguments.keep.as_deref());
+    let name = arguments.behaviour.file_stem().unwrap_or_default();
+    let kept = || std::path::Path::new("runs").join(name).join("watch");
+    let out = arguments.out.clone().or_else(|| keep.map(|_| kept()));
     let settings = WatchSettings {
         behaviour: arguments.behaviour.clone(),
         seeds: (0..arguments.seeds).map(|index| arguments.seed.wrapping_add(index)).collect(),
         threads: arguments.threads.unwrap_or(0) as usize,
+        keep,
+        finished: out.clone().map(finished),
         overrides: Overrides { world, steps: arguments.steps, test_steps: None, set },
         filter_folders: sources.filter_dir.clone(),
         filters: Box::new(move || super::sources::catalogue(&sources)),
@@ -40,12 +46,45 @@ pub(crate) fn run(arguments: &WatchArguments, console: &mut Console) -> Result<u
     }
     console.line(&format!("page:      {}", address.url))?;
     console.line(&format!("watching:  {}; end with Ctrl-C", arguments.behaviour.display()))?;
+    if let Some(out) = &out {
+        console.line(&format!("results:   {}", out.display()))?;
+    }
     console.finish()?;
     if !arguments.no_open {
         open(&address.url);
     }
     relearner.serve(&stop)?;
     Ok(0)
+}
+
+/// The command line allows no other words.
+#[cfg(feature = "serve")]
+fn keep(word: Option<&str>) -> Option<engine::learner::Carry> {
+    let word = word?;
+    engine::learner::Carry::ALL.into_iter().find(|(name, _)| *name == word).map(|(_, carry)| carry)
+}
+
+/// Writes every finished run to a folder.
+#[cfg(feature = "serve")]
+fn finished(out: std::path::PathBuf) -> engine::watch::Finished {
+    use super::folder::{RunFolder, SeedResult};
+    use engine::experiment::Summary;
+    use engine::store::RunLog;
+    Box::new(move |run, tests, seconds| {
+        let (plan, many) = (&run.plan, run.seeds.len() > 1);
+        let Some(first) = run.seeds.first() else { return Ok(()) };
+        let folder = RunFolder::create(&out, plan, &[], first.learned.seed)?;
+        let result = |(seed, tested): (&engine::watch::SeedRun, engine::experiment::TestRun)| {
+            let mut summary =
+                Summary::new(plan, &seed.learned, tested.figures.clone(), seconds / run.seeds.len() as f64);
+            let log = RunLog { learning: (*seed.learning).clone(), test: seed.tested.clone() };
+            summary.log_sha256 = Some(log.sha256());
+            folder.keep_log(plan, seed.learned.seed, &log, many)?;
+            Ok(SeedResult { learned: (*seed.learned).clone(), tested, summary, log: (!many).then_some(log) })
+        };
+        let results = run.seeds.iter().zip(tests).map(result).collect::<engine::diagnostic::Result<Vec<_>>>()?;
+        folder.write(plan, &results)
+    })
 }
 
 /// Opens the browser if there is one; the address is printed anyhow.

@@ -135,7 +135,7 @@ impl Learning {
     /// Learns for so many more steps, or until `stop` is set at the end of a window, or something fails.
     ///
     /// # Errors
-    /// What failed, if it was the first step; a later failure is told by [`Learning::learned`].
+    /// What failed, if it was the first step; a later failure is told by [`Learning::finish`].
     pub fn run(
         &mut self,
         steps: u64,
@@ -206,10 +206,9 @@ impl Learning {
         Ok(())
     }
 
-    /// What was learned until now. Ends the memory of earlier states, as the end of learning does.
+    /// What is known now; learning can go on as if nobody had looked.
     #[must_use]
-    pub fn learned(&mut self) -> Learned {
-        self.learner.forget();
+    pub fn snapshot(&self) -> Learned {
         Learned {
             seed: self.seed,
             steps: self.steps,
@@ -221,7 +220,10 @@ impl Learning {
         }
     }
 
-    fn finish(mut self) -> Learned {
-        self.learned()
+    /// Ends the learning, or a leg of it: what the memory of earlier states still holds is learned too.
+    #[must_use]
+    pub fn finish(&mut self) -> Learned {
+        self.learner.forget();
+        self.snapshot()
     }
 }

@@ -1,7 +1,7 @@
 //! The live page: learns again whenever the script, its world or its filters are saved, and shows the result in a browser.
 //!
 //! ```text
-//!   files.rs (saves) --> relearn.rs (this thread, all cores) --> board.rs (the last good run, the last error)
+//!   files.rs (saves) --> relearn.rs, session.rs (all cores) --> board.rs (the last good run, the last error)
 //!                                                                    ^ reads
 //!   browser <--> socket.rs, guard.rs, server.rs (one thread) --------+
 //! ```
@@ -14,8 +14,9 @@ mod files;
 mod guard;
 mod relearn;
 mod server;
+mod session;
 mod socket;
 
 pub use board::{Board, SavedRun, SeedRun};
-pub use relearn::{Relearner, WatchSettings};
+pub use relearn::{Finished, Relearner, WatchSettings};
 pub use server::{Address, listen};

@@ -23,6 +23,11 @@ pub(super) const PAGES: &[(&str, &str)] = &[
       End other programs that watch behaviours, or name a port that is free: --port 9000.",
     ),
     (
+        "E-WATCH-ROOM",
+        "With --keep or --out every step of every seed is kept, so that the run can be written and driven again; these\n\
+      steps find no room in memory. Watch fewer seeds (--seeds 3), or learn fewer steps on each save (--steps 2000).",
+    ),
+    (
         "E-WATCH-SERVER",
         "The server of the page cannot start: the system gives it no thread, no socket or no randomness for its token.\n\
       The message has the system's reason.",

@@ -189,7 +189,7 @@ function drawFrame(now) {
     map.drawBase(app.doc, steps, app.litRule);
     $('map-note').textContent = steps ? `${app.phase}: the last ${TRAIL_STEPS} steps, and where rules fired; metres` : 'these steps are not in this file';
     curve.drawBase(app.doc, seedView(), app.before);
-    timeline.drawBase(app.doc, steps, app.litRule);
+    timeline.drawBase(app.doc, steps, app.litRule, app.phase === 'learning' ? app.doc.swaps : []);
     curve.stale = true;
   }
   const index = steps ? steps.index(app.step) : -1;

@@ -38,7 +38,10 @@ function factWords(fact, doc) {
 
 /** What each rule said: with its facts where the moment brought them, else only which fired. */
 function showReasons(doc, track, index, reasons) {
-  const rules = doc.rules.map((rule, at) => ({ rule, at, fired: track.fired(index, at), why: reasons?.rules[at] }));
+  // Before a swap of the reward, another script judged: its rules are known by their names.
+  const why = new Map(reasons?.rules.map((rule) => [rule.name, rule]));
+  const rules = doc.rules.map((rule, at) => ({ rule, at, fired: track.fired(index, at), why: why.get(rule.name) }));
+  const gone = [...why.values()].filter((rule) => rule.added !== null && !doc.rules.some(({ name }) => name === rule.name));
   const shown = rules.filter(({ fired, why }) => fired || why);
   $('reasons').replaceChildren(el('ul', {}, ...shown.map(({ rule, at, fired, why }) => {
     const held = why && why.needed > 1 ? `; held ${why.held} of ${why.needed} steps` : '';
@@ -47,7 +50,7 @@ function showReasons(doc, track, index, reasons) {
     const facts = why ? why.parts.flatMap((part) => part.facts.map((fact) => factWords(fact, doc))) : [];
     return el('li', {}, chip(at), fired ? el('b', { text: rule.name }) : el('span', { class: 'quiet', text: rule.name }), ` ${words}`,
       ...[...new Set(facts)].map((fact) => el('div', { class: 'fact', text: fact })));
-  })));
+  }), ...gone.map((rule) => el('li', { class: 'quiet', text: `${rule.name} ${signed(rule.added)}, in the script before the swap` }))));
 }
 
 /** The causes of one window of the curve: which rules, through which beams, when first. */

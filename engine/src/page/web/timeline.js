@@ -22,7 +22,7 @@ class Timeline {
     for (const end of ['pointerup', 'pointercancel']) this.over.addEventListener(end, () => { held = false; });
   }
 
-  drawBase(doc, track, litRule) {
+  drawBase(doc, track, litRule, swaps) {
     const rules = doc.rules.map((_, rule) => rule).filter((rule) => marked(doc, rule));
     this.box.style.height = `${rules.length * ROW + 26}px`;
     const sheet = fit(this.base);
@@ -54,6 +54,7 @@ class Timeline {
       pen.globalAlpha = 1;
     });
     const foot = rules.length * ROW + 1;
+    for (const { step } of swaps) line(pen, [[x(step), 0], [x(step), foot]], ink.text, 1, [1, 3]);
     for (const gap of track.spans.slice(1)) {
       label(pen, '…', x(gap[0]), foot + 10, 'center');
     }

@@ -67,15 +67,16 @@ fn a_session_that_swaps_learns_what_the_plan_of_its_legs_learns() {
         // In pieces, as a page that shows how far it has come does.
         for steps in [400, 400, 300] {
             learning.run(steps, &stop, &|_| (), &mut ledger).unwrap();
+            drop(learning.snapshot());
         }
-        // Looking at what was learned changes nothing that comes after a swap.
-        drop(learning.learned());
+        // A leg that is ended and shown goes on as one that is swapped at once.
+        drop(learning.finish());
         learning.swap(&second, carry, &mut ledger).unwrap();
         learning.swap(&second, Carry::Keep, &mut ledger).unwrap();
         learning.run(400, &stop, &|_| (), &mut ledger).unwrap();
         learning.swap(&third, carry, &mut ledger).unwrap();
         learning.run(300, &stop, &|_| (), &mut ledger).unwrap();
-        let learned = learning.learned();
+        let learned = learning.finish();
         assert_eq!(ledger.first_difference(&log.learning), None);
         assert_eq!(
             (learned.state_hash, learned.policy, learned.tally),
