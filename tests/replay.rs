@@ -217,3 +217,16 @@ fn a_script_that_sees_something_else_cannot_judge_a_record() {
     );
     json(&bench, &["rescore", "a", "other.rhai"]);
 }
+
+#[test]
+fn a_run_that_a_failure_ended_keeps_its_steps_and_fails_again_in_the_same_one() {
+    let bench = Bench::new();
+    let script = "world(\"small\");\nrun(#{ steps: 800, test_steps: 400 });\n\
+                  fn reward(facts) { if facts.time.step > 500 { throw \"no more\" } -facts.laser.nearest }\n";
+    bench.write("ends.rhai", script);
+    let told = bench.failure(&["run", "ends.rhai"]);
+    assert!(told.contains("what was learned in 500 steps is kept") && told.contains("no more (in step 500)"), "{told}");
+    let told = bench.ok(&["replay", "runs/ends/1", "--verify"]);
+    assert!(told.contains("500 steps of learning and 0 of the test"), "{told}");
+    assert!(bench.ok(&["explain", "runs/ends/1", "--step", "499"]).contains("fn reward"));
+}

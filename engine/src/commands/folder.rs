@@ -50,11 +50,20 @@ impl RunFolder {
         write_log(&self.of_seed(seed, many)?, plan, &[], seed, log)
     }
 
-    /// Writes the policy of a seed that a failure ended.
-    pub(super) fn keep(&self, plan: &Plan, learned: &Learned, many: bool) -> Result<PathBuf> {
-        let path = self.of_seed(learned.seed, many)?.join("policy.toml");
+    /// Writes what there is of a seed that a failure ended: its policy and its steps, not tested.
+    pub(super) fn keep(&self, plan: &Plan, learned: &Learned, log: &RunLog, many: bool) -> Result<PathBuf> {
+        let folder = self.of_seed(learned.seed, many)?;
+        write_atomic(&folder.join("run.toml"), run_to_toml(plan, &[], learned.seed)?.as_bytes())?;
+        write_log(&folder, plan, &[], learned.seed, log)?;
+        let path = folder.join("policy.toml");
         write_atomic(&path, policy_text(plan, learned)?.as_bytes())?;
-        Ok(path)
+        // Of an older run in the same folder.
+        match std::fs::remove_file(folder.join("summary.json")) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                Err(Box::new(Diagnostic::disk("remove the old", &folder.join("summary.json"), &error)))
+            }
+            _ => Ok(path),
+        }
     }
 
     /// Writes the figures, the policy and the pictures; for many seeds, a folder for each and the spread above them.

@@ -242,18 +242,23 @@ fn verify(recorded: &RecordedRun, console: &mut Console) -> std::result::Result<
     let RecordedRun { stored, log, summary } = recorded;
     let (plan, seed) = (&stored.plan, stored.seed);
     let stop = on_ctrl_c()?;
-    // A run that was stopped is done again as far as it came.
-    let steps = Overrides {
-        steps: Some(log.learning.last_leg().0),
-        test_steps: Some(log.test.steps()),
-        ..Overrides::default()
+    // A run that was stopped is done again as far as it came; one that a failure ended, until it fails again.
+    let steps = match summary {
+        Some(_) => Overrides {
+            steps: Some(log.learning.last_leg().0),
+            test_steps: Some(log.test.steps()),
+            ..Overrides::default()
+        },
+        None => Overrides::default(),
     };
     let plan = plan.clone().with_changes(&steps)?;
     let mut again = RunLog::new(&plan);
     let state_hash = match &stored.decider {
         Decider::Learned(policy) => {
             let learned = learn_into(&plan, seed, &stop, &|_| (), &mut again.learning)?;
-            test_into(&plan, &learned.policy, seed, &stop, &mut again.test)?;
+            if summary.is_some() {
+                test_into(&plan, &learned.policy, seed, &stop, &mut again.test)?;
+            }
             if stop.load(Ordering::Relaxed) {
                 return Ok(INTERRUPTED);
             }
@@ -273,7 +278,7 @@ fn verify(recorded: &RecordedRun, console: &mut Console) -> std::result::Result<
             tested.run.state_hash
         }
     };
-    if state_hash != summary.state_hash {
+    if summary.as_ref().is_some_and(|summary| state_hash != summary.state_hash) {
         return Err(Box::new(differs("state_hash in summary.json")).into());
     }
     let verified = Verified {

@@ -108,7 +108,7 @@ fn learn_all(
         let (started, mut log) = (Instant::now(), RunLog::new(plan));
         let mut learned = learn_into(plan, seed, stop, &report, &mut log.learning)?;
         if let Some(fault) = learned.fault.take() {
-            let kept = folder.keep(plan, &learned, seeds.len() > 1)?;
+            let kept = folder.keep(plan, &learned, &log, seeds.len() > 1)?;
             console.note(&format!("what was learned in {} steps is kept in {}", learned.steps, kept.display()));
             return Err(fault);
         }

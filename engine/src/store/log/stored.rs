@@ -20,13 +20,13 @@ pub struct RecordedRun {
     pub stored: StoredRun,
     /// Every step.
     pub log: RunLog,
-    /// The figures as they were written.
-    pub summary: Summary,
+    /// The figures as they were written; none of a run that a failure ended, which was not tested.
+    pub summary: Option<Summary>,
 }
 
 impl RecordedRun {
     /// Reads `run.toml`, `policy.toml`, `log.bin` and `summary.json` of the folder of one seed,
-    /// which may use these filters.
+    /// which may use these filters. Without steps of a test, the summary may be missing.
     ///
     /// # Errors
     /// If one is missing or damaged, or the four do not belong together.
@@ -39,7 +39,11 @@ impl RecordedRun {
             error.message = format!("'{}': {}", path.display(), error.message);
             error
         })?;
-        let text = read_stored(&folder.join("summary.json"))?;
+        let path = folder.join("summary.json");
+        if log.test.is_empty() && !log.learning.is_empty() && !path.exists() {
+            return Ok(Self { stored, log, summary: None });
+        }
+        let text = read_stored(&path)?;
         let summary: Summary = serde_json::from_str(&text.text).map_err(|error| {
             let message = format!("'{}' is not the summary of a run: {error}", text.path.display());
             Box::new(Diagnostic::new(Kind::State, "E-RUN-FILE", message).help("run the behaviour again"))
@@ -49,7 +53,7 @@ impl RecordedRun {
             let error = Diagnostic::new(Kind::State, "E-LOG-RUN", message);
             return error.help("keep the files of one run together").into();
         }
-        Ok(Self { stored, log, summary })
+        Ok(Self { stored, log, summary: Some(summary) })
     }
 }
 
