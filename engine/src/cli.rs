@@ -112,6 +112,9 @@ pub(crate) struct RunArguments {
     /// The steps from one recorded image to the next
     #[arg(long, default_value = "10", value_parser = count, allow_hyphen_values = true, value_name = "N")]
     pub(crate) record_every: u64,
+    /// Look it over too, as engine check does: the findings and what the reward can be had for stand in report.html
+    #[arg(long)]
+    pub(crate) check: bool,
     /// Run a .pack file that is not signed
     #[arg(long)]
     pub(crate) allow_unsigned: bool,

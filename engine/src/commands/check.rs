@@ -1,6 +1,7 @@
 //! `engine check`: what is wrong or suspicious in a behaviour, before it is learned.
 
 use std::io::IsTerminal;
+use std::sync::atomic::AtomicBool;
 
 use engine::experiment::{Overrides, Plan};
 use engine::lint::{self, Exploits, Report, Severity};
@@ -36,21 +37,42 @@ fn print(console: &mut Console, plan: &Plan, report: &Report) -> std::result::Re
     if let Some(exploits) = &report.exploits {
         print_exploits(console, exploits)?;
     }
-    let count = |severity| report.findings.iter().filter(|finding| finding.severity == severity).count();
-    let words = |count: usize, one: &str| format!("{count} {one}{}", if count == 1 { "" } else { "s" });
     console.line(&format!(
-        "checked:   {} in {}, {} steps: {}, {}, {}",
+        "checked:   {} in {}, {} steps: {}",
         report.behaviour,
         report.world,
         report.steps,
-        words(count(Severity::Error), "error"),
-        words(count(Severity::Warning), "warning"),
-        words(count(Severity::Note), "note")
+        counts(report)
     ))?;
     if report.findings.is_empty() {
         return Ok(());
     }
     console.line("           engine explain CODE says more about a code")
+}
+
+/// Checks the behaviour of a run that is over; nothing if it was stopped.
+pub(super) fn beside_a_run(plan: &Plan, stop: &AtomicBool, console: &Console) -> Option<Report> {
+    lint::check_until(plan, stop).unwrap_or_else(|fault| {
+        // The run itself is done, and its results are worth keeping.
+        console.note(&format!("the check ended early: {}", fault.message));
+        None
+    })
+}
+
+/// The result of a check in two lines at most.
+pub(super) fn print_short(console: &mut Console, report: &Report) -> std::result::Result<(), ConsoleError> {
+    console.line(&format!("checked:   {}; report.html shows them", counts(report)))?;
+    match &report.exploits {
+        Some(exploits) => console.line(&format!("           {}", exploits.sentence)),
+        None => Ok(()),
+    }
+}
+
+fn counts(report: &Report) -> String {
+    let count = |severity| report.findings.iter().filter(|finding| finding.severity == severity).count();
+    let words = |count: usize, one: &str| format!("{count} {one}{}", if count == 1 { "" } else { "s" });
+    let [errors, warnings, notes] = [Severity::Error, Severity::Warning, Severity::Note].map(count);
+    format!("{}, {}, {}", words(errors, "error"), words(warnings, "warning"), words(notes, "note"))
 }
 
 fn print_exploits(console: &mut Console, exploits: &Exploits) -> std::result::Result<(), ConsoleError> {
@@ -74,6 +96,7 @@ fn print_exploits(console: &mut Console, exploits: &Exploits) -> std::result::Re
     }
     let coverage = &exploits.coverage;
     console.line(&format!("  {:24}{:>10}", "no failure, driving on", short(exploits.honest_per_400)))?;
+    console.line(&format!("  {}", exploits.sentence))?;
     console.line(&format!(
         "  The model has seen {} of {} states, {} of them in fewer than 20 steps; {} of {} pairs of state and action \
          were never tried.\n",

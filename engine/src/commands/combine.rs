@@ -8,11 +8,13 @@ use engine::diagnostic::{Diagnostic, Kind, Result};
 use engine::experiment::{
     CombinationFigures, CombinedRun, Cycle, Member, Plan, Spread, Step, Summary, in_parallel, test_combined,
 };
+use engine::lint::Report;
 use engine::page::SeedData;
 use engine::report::{disagreements_csv, write_atomic};
 use engine::robot::SimulatedRobot;
 use engine::store::{RunLog, run_to_toml};
 
+use super::check;
 use super::folder::{RunFolder, create, draw_frame, draw_trails, write_json, write_log};
 use super::run::print_many;
 use super::stop::{INTERRUPTED, on_ctrl_c};
@@ -52,8 +54,9 @@ pub(super) fn run(
         summary.log_sha256 = Some(log.sha256());
         Ok(SeedResult { tested, summary, log })
     })?;
+    let checked = if arguments.check { check::beside_a_run(plan, &stop, console) } else { None };
     let good = if let [result] = results.as_slice() {
-        write_seed(path, plan, members, result)?;
+        write_seed(path, plan, members, result, checked.as_ref())?;
         console.json(&result.summary)?;
         print_one(console, result)?;
         result.summary.is_good()
@@ -64,12 +67,15 @@ pub(super) fn run(
             let folder = path.join(result.summary.seed.to_string());
             create(&folder)?;
             write_atomic(&folder.join("run.toml"), run_to_toml(plan, members, result.summary.seed)?.as_bytes())?;
-            write_seed(&folder, plan, members, result)?;
+            write_seed(&folder, plan, members, result, checked.as_ref())?;
         }
         console.json(&spread)?;
         print_many(console, &spread)?;
         2 * spread.converged > spread.seeds.len()
     };
+    if let Some(report) = &checked {
+        check::print_short(console, report)?;
+    }
     console.line(&format!("results:   {}", path.display()))?;
     if stop.load(Ordering::Relaxed) {
         console.note("stopped by Ctrl-C; what was tested until then is kept");
@@ -78,7 +84,13 @@ pub(super) fn run(
     Ok(u8::from(!good))
 }
 
-fn write_seed(folder: &Path, plan: &Plan, members: &[Member], result: &SeedResult) -> Result<()> {
+fn write_seed(
+    folder: &Path,
+    plan: &Plan,
+    members: &[Member],
+    result: &SeedResult,
+    checked: Option<&Report>,
+) -> Result<()> {
     write_json(&folder.join("summary.json"), &result.summary)?;
     write_log(folder, plan, members, result.summary.seed, &result.log)?;
     let names: Vec<&str> = members.iter().map(|member| member.name.as_str()).collect();
@@ -90,7 +102,7 @@ fn write_seed(folder: &Path, plan: &Plan, members: &[Member], result: &SeedResul
     let test = Some(&result.summary.test);
     let (learning, tested) = (&result.log.learning, &result.log.test);
     let data = SeedData { seed: result.summary.seed, tally: None, policy: None, test, learning, tested };
-    super::page::write(folder, plan, &[data])
+    super::page::write(folder, plan, &[data], checked)
 }
 
 fn print_one(console: &mut Console, result: &SeedResult) -> std::result::Result<(), ConsoleError> {

@@ -6,6 +6,7 @@ use super::page::write_page;
 use engine::diagnostic::{Diagnostic, Kind, Result};
 use engine::experiment::{CertaintyGrid, Learned, Member, Plan, Spread, Summary, TestRun, Trail, WINDOW_STEPS};
 use engine::geometry::Point2;
+use engine::lint::Report;
 use engine::report::{
     CurveData, CurveRow, PolicyData, PolicyState, TrajectoryData, certainty_grid, curve_csv, learning_curve, policy,
     snapshot_frame, trajectories, write_atomic,
@@ -67,15 +68,15 @@ impl RunFolder {
     }
 
     /// Writes the figures, the policy and the pictures; for many seeds, a folder for each and the spread above them.
-    pub(super) fn write(&self, plan: &Plan, results: &[SeedResult]) -> Result<()> {
-        let [result] = results else { return self.write_many(plan, results) };
+    pub(super) fn write(&self, plan: &Plan, results: &[SeedResult], checked: Option<&Report>) -> Result<()> {
+        let [result] = results else { return self.write_many(plan, results, checked) };
         write_seed(&self.path, plan, result)?;
         draw_curve(&self.path, plan, &[result])?;
         draw_seed(&self.path, plan, result)?;
-        write_page(&self.path, plan, std::slice::from_ref(result))
+        write_page(&self.path, plan, std::slice::from_ref(result), checked)
     }
 
-    fn write_many(&self, plan: &Plan, results: &[SeedResult]) -> Result<()> {
+    fn write_many(&self, plan: &Plan, results: &[SeedResult], checked: Option<&Report>) -> Result<()> {
         let spread = Spread::new(results.iter().map(|result| result.summary.clone()).collect());
         write_json(&self.path.join("summary.json"), &spread)?;
         for result in results {
@@ -92,7 +93,7 @@ impl RunFolder {
             Some(worst) => draw_seed(&self.path.join(worst.summary.seed.to_string()), plan, worst)?,
             None => return Ok(()),
         }
-        write_page(&self.path, plan, results)
+        write_page(&self.path, plan, results, checked)
     }
 }
 

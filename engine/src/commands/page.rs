@@ -4,6 +4,7 @@ use std::path::Path;
 
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Ledger, Plan};
+use engine::lint::Report;
 use engine::page::{Document, Moments, SeedData, page};
 use engine::report::write_atomic;
 use engine::store::{LOG_FILE, RunLog, read_log, read_stored};
@@ -16,7 +17,7 @@ const SHOTS: usize = 60;
 const MOST_SEEDS: usize = 3;
 
 /// Writes the page of a run that learned; of many seeds, the worst bring their steps.
-pub(super) fn write_page(folder: &Path, plan: &Plan, results: &[SeedResult]) -> Result<()> {
+pub(super) fn write_page(folder: &Path, plan: &Plan, results: &[SeedResult], checked: Option<&Report>) -> Result<()> {
     let mut order: Vec<usize> = (0..results.len()).collect();
     order.sort_by(|a, b| {
         let failures = |index: usize| results[index].summary.test.failures_per_1000;
@@ -42,12 +43,15 @@ pub(super) fn write_page(folder: &Path, plan: &Plan, results: &[SeedResult]) -> 
             tested: log.map_or(&none, |log| &log.test),
         }
     });
-    write(folder, plan, &data.collect::<Vec<_>>())
+    write(folder, plan, &data.collect::<Vec<_>>(), checked)
 }
 
 /// Writes the page of what is known of some seeds.
-pub(super) fn write(folder: &Path, plan: &Plan, seeds: &[SeedData<'_>]) -> Result<()> {
-    let document = Document::new(plan, seeds, Moments { shots: SHOTS, scans: true, seeds: None })?;
+pub(super) fn write(folder: &Path, plan: &Plan, seeds: &[SeedData<'_>], checked: Option<&Report>) -> Result<()> {
+    let mut document = Document::new(plan, seeds, Moments { shots: SHOTS, scans: true, seeds: None })?;
+    if let Some(report) = checked {
+        document = document.with_check(report);
+    }
     write_atomic(&folder.join("report.html"), page(Some(&document))?.html.as_bytes())
 }
 

@@ -10,6 +10,7 @@ use engine::pack::Runnable;
 use engine::record::{self, record};
 use engine::store::RunLog;
 
+use super::check;
 use super::folder::{RunFolder, SeedResult};
 use super::stop::{INTERRUPTED, on_ctrl_c};
 use crate::cli::RunArguments;
@@ -33,7 +34,8 @@ pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::resul
     let stop = on_ctrl_c()?;
     let threads = arguments.threads.unwrap_or(0) as usize;
     let results = learn_all(&plan, &folder, &seeds, threads, &stop, console)?;
-    folder.write(&plan, &results)?;
+    let checked = if arguments.check { check::beside_a_run(&plan, &stop, console) } else { None };
+    folder.write(&plan, &results, checked.as_ref())?;
     if let (Some(path), [SeedResult { log: Some(log), .. }]) = (&arguments.record, results.as_slice()) {
         let phases = [(Phase::Learning, &log.learning), (Phase::Test, &log.test)];
         let recording = record(&plan, arguments.seed, &phases, arguments.record_every, path)?;
@@ -57,6 +59,9 @@ pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::resul
         print_many(console, &spread)?;
         2 * spread.seeds.iter().filter(|seed| seed.is_good()).count() > spread.seeds.len()
     };
+    if let Some(report) = &checked {
+        check::print_short(console, report)?;
+    }
     console.line(&format!("results:   {}", folder.path().display()))?;
     if interrupted {
         console.note("stopped by Ctrl-C; what was learned until then is kept");

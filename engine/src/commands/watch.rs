@@ -83,7 +83,7 @@ fn finished(out: std::path::PathBuf) -> engine::watch::Finished {
             Ok(SeedResult { learned: (*seed.learned).clone(), tested, summary, log: (!many).then_some(log) })
         };
         let results = run.seeds.iter().zip(tests).map(result).collect::<engine::diagnostic::Result<Vec<_>>>()?;
-        folder.write(plan, &results)
+        folder.write(plan, &results, None)
     })
 }
 

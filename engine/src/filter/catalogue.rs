@@ -203,6 +203,12 @@ fn files(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
+/// Whether a file of a folder of filters is one, by its name.
+#[must_use]
+pub fn is_filter_file(path: &Path) -> bool {
+    name_and_form(path).is_some()
+}
+
 /// `libsobel.so` and `sobel.so` are the native filter `sobel`, `sobel.wasm` is the same in a sandbox; other files are none.
 fn name_and_form(path: &Path) -> Option<(String, Form)> {
     let stem = path.file_stem()?.to_str()?;

@@ -16,7 +16,7 @@ mod wasm;
 mod wire;
 mod worker;
 
-pub use catalogue::{Catalogue, Entry, Form, LINKED_IN, Sources};
+pub use catalogue::{Catalogue, Entry, Form, LINKED_IN, Sources, is_filter_file};
 pub use chain::{Chain, ChainError};
 pub use conformance::conformance;
 pub use running::Running;

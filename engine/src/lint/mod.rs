@@ -14,11 +14,15 @@ mod setup;
 mod shadow;
 mod trial;
 mod units;
+mod verdict;
 
 pub use exploit::{Exploit, Exploits};
 pub use finding::{Finding, Severity};
 pub use model::{Coverage, Model};
 pub use trial::{Trial, TrialStep};
+pub use verdict::Verdict;
+
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::diagnostic::{Kind, Result};
 use crate::experiment::Plan;
@@ -56,17 +60,31 @@ impl Report {
 /// # Errors
 /// If a sensor or a filter fails, or a limit stops the script; any other failure of it in a step is a finding.
 pub fn check(plan: &Plan) -> Result<Report> {
+    look(plan, &AtomicBool::new(false))
+}
+
+/// The same, until `stop` is set: then nothing.
+///
+/// # Errors
+/// As [`check`].
+pub fn check_until(plan: &Plan, stop: &AtomicBool) -> Result<Option<Report>> {
+    let report = look(plan, stop)?;
+    Ok((!stop.load(Ordering::Relaxed)).then_some(report))
+}
+
+/// What is found once `stop` is set means nothing.
+fn look(plan: &Plan, stop: &AtomicBool) -> Result<Report> {
     let mut findings = read(plan);
     let (mut steps, mut exploits) = (0, None);
     if plan.settings.policies.is_empty() {
-        let tried = Trial::run(plan).and_then(|mut trial| Ok((Exploits::find(plan, &mut trial)?, trial)));
+        let tried = Trial::run(plan, stop).and_then(|mut trial| Ok((Exploits::find(plan, &mut trial, stop)?, trial)));
         match tried {
             Ok((found, trial)) => {
                 steps = trial.steps();
                 fired::check(plan, &trial, &found, &mut findings);
                 scale::observed(plan, &trial, &mut findings);
                 choice::observed(plan, &trial, &found, &mut findings);
-                found.check(plan, &mut findings);
+                verdict::check(plan, &found, &mut findings);
                 exploits = Some(found);
             }
             // The script's own mistake is a finding like others; what a limit stopped is none.

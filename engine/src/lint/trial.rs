@@ -70,14 +70,14 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Drives at random and learns for a while, both at once.
+    /// Drives at random and learns for a while, both at once; both end early once `stop` is set.
     ///
     /// # Errors
     /// If a sensor, a filter or the script fails.
-    pub fn run(plan: &Plan) -> Result<Self> {
+    pub fn run(plan: &Plan, stop: &AtomicBool) -> Result<Self> {
         let drives = in_parallel(&[0, 1], 2, |kind| match kind {
-            0 => random(plan).map(|drive| (drive.steps, drive.rules, None)),
-            _ => learning(plan).map(|(steps, rules, policy)| (steps, rules, Some(policy))),
+            0 => random(plan, stop).map(|drive| (drive.steps, drive.rules, None)),
+            _ => learning(plan, stop).map(|(steps, rules, policy)| (steps, rules, Some(policy))),
         })?;
         let rules = vec![RuleTrial::default(); plan.behaviour.rules().len()];
         let mut trial = Self { transitions: Vec::new(), learned: None, rules };
@@ -141,7 +141,13 @@ impl RuleTrial {
 }
 
 /// Drives by `choose` for some steps, with a look at every rule in each.
-pub(super) fn drive(plan: &Plan, steps: u64, seed: u64, choose: impl FnMut(usize) -> usize) -> Result<Drive> {
+pub(super) fn drive(
+    plan: &Plan,
+    steps: u64,
+    seed: u64,
+    stop: &AtomicBool,
+    choose: impl FnMut(usize) -> usize,
+) -> Result<Drive> {
     let mut plan = plan.clone();
     plan.settings.run.test_steps = steps;
     let recovers: Vec<bool> = plan.behaviour.outline().rules.iter().map(|rule| rule.recover).collect();
@@ -155,7 +161,7 @@ pub(super) fn drive(plan: &Plan, steps: u64, seed: u64, choose: impl FnMut(usize
         kept.push(TrialStep { state, action, reward, recover, next: None });
         look(cycle, recover, &recovers, &mut rules);
     };
-    let run = test_choices(&plan, seed, &AtomicBool::new(false), choose, &mut watch)?;
+    let run = test_choices(&plan, seed, stop, choose, &mut watch)?;
     Ok(Drive { run, steps: kept, rules })
 }
 
@@ -190,16 +196,16 @@ fn look(cycle: &Cycle<SimulatedRobot>, recovered: bool, recovers: &[bool], rules
     }
 }
 
-fn random(plan: &Plan) -> Result<Drive> {
+fn random(plan: &Plan, stop: &AtomicBool) -> Result<Drive> {
     let (mut random, actions) = (Random::new(SEED, Stream::Test), plan.settings.actions.len() as u32);
-    drive(plan, RANDOM_STEPS, SEED, |_| random.below(actions) as usize)
+    drive(plan, RANDOM_STEPS, SEED, stop, |_| random.below(actions) as usize)
 }
 
-fn learning(plan: &Plan) -> Result<(Vec<TrialStep>, Vec<RuleTrial>, Policy)> {
+fn learning(plan: &Plan, stop: &AtomicBool) -> Result<(Vec<TrialStep>, Vec<RuleTrial>, Policy)> {
     let mut plan = plan.clone();
     plan.settings.run.steps = LEARNING_STEPS;
     let mut ledger = Ledger::new(&plan, LEARNING_STEPS);
-    let learned = learn_into(&plan, SEED, &AtomicBool::new(false), &|_| (), &mut ledger)?.whole()?;
+    let learned = learn_into(&plan, SEED, stop, &|_| (), &mut ledger)?.whole()?;
     let mut rules = vec![RuleTrial::default(); plan.behaviour.rules().len()];
     let recovers: Vec<bool> = plan.behaviour.outline().rules.iter().map(|rule| rule.recover).collect();
     let mut steps: Vec<TrialStep> = Vec::with_capacity(ledger.len());

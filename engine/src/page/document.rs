@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::seed::{SeedData, SeedView};
-use super::{Ground, Moments, Shot};
+use super::{Checked, Finding, Ground, Moments, Shot};
 use crate::diagnostic::Result;
 use crate::experiment::{Plan, WINDOW_STEPS};
 use crate::learner::Carry;
@@ -11,7 +11,7 @@ use crate::settings::{SETTINGS, Settings, Value};
 use crate::world::{HALF_LENGTH_M, HALF_WIDTH_M};
 
 /// The contract's number; a page shows only documents of its own.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 /// Beams of the laser that are drawn, at most.
 const MOST_SCAN_BEAMS: usize = 37;
 /// The most bytes of tracks and pictures in one document; seeds beyond it have curve and policy only.
@@ -62,6 +62,8 @@ pub struct Document {
     pub shots: Vec<Shot>,
     /// What reading the script found; what trying it out found too, where that was done.
     pub findings: Vec<Finding>,
+    /// What trying it out came to; null if it was only read.
+    pub checked: Option<Checked>,
 }
 
 /// A swap of the reward while the robot learned.
@@ -114,30 +116,6 @@ pub struct SettingView {
     pub unit: &'static str,
     /// Whether it differs from the default.
     pub changed: bool,
-}
-
-/// Something that a check of the script found.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Finding {
-    /// Its code.
-    pub code: String,
-    /// What is wrong.
-    pub message: String,
-    /// The line in the script, from 1, if it has one.
-    pub line: Option<usize>,
-    /// What to do.
-    pub help: Option<String>,
-}
-
-impl From<&crate::lint::Finding> for Finding {
-    fn from(found: &crate::lint::Finding) -> Self {
-        Self {
-            code: found.code.to_owned(),
-            message: found.message.clone(),
-            line: Some(found.line),
-            help: Some(found.help.clone()).filter(|help| !help.is_empty()),
-        }
-    }
 }
 
 impl Document {
@@ -224,6 +202,7 @@ impl Document {
             seeds: Vec::new(),
             shots: Vec::new(),
             findings: crate::lint::read(plan).iter().map(Finding::from).collect(),
+            checked: None,
         })
     }
 

@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use crate::report::holds;
-use crate::world::Layout;
 use crate::world::scene::{Material, Shape, Solid};
+use crate::world::{Layout, Mover};
 
 /// What stands in a world.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -17,8 +17,17 @@ pub struct Ground {
     pub solids: Vec<Outline>,
     /// The lap that the world's author had in mind, metres.
     pub route_m: Option<Vec<[f64; 2]>>,
-    /// What drives by itself first: its solids around its own origin, x forward.
-    pub prey: Option<Vec<Outline>>,
+    /// What drives by itself, in the order of the world file.
+    pub movers: Vec<MoverOutline>,
+}
+
+/// What drives by itself.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MoverOutline {
+    /// Its name in the world file.
+    pub name: String,
+    /// Its solids around its own origin, x forward.
+    pub solids: Vec<Outline>,
 }
 
 /// One solid.
@@ -52,13 +61,16 @@ impl Ground {
             key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal)
         });
         let outline = |solid: &&Solid| Outline::new(solid, parts.materials.get(solid.material), &driven);
-        let mover = layout.movers.first();
+        let mover = |mover: &Mover| MoverOutline {
+            name: mover.name.clone(),
+            solids: mover.solids.iter().map(|solid| outline(&solid)).collect(),
+        };
         Self {
             name: layout.name.clone(),
             bounds_m: bounds(&parts.solids, &driven),
             solids: solids.iter().map(outline).collect(),
             route_m,
-            prey: mover.map(|mover| mover.solids.iter().map(|solid| outline(&solid)).collect()),
+            movers: layout.movers.iter().map(mover).collect(),
         }
     }
 }

@@ -18,6 +18,7 @@ const SCRIPTS: &[&str] = &[
     include_str!("web/frames.js"),
     include_str!("web/states.js"),
     include_str!("web/reasons.js"),
+    include_str!("web/findings.js"),
     include_str!("web/live.js"),
     include_str!("web/app.js"),
 ];

@@ -5,8 +5,8 @@
 //!
 //! | field of a [`Track`] | each step | unit |
 //! |---|---|---|
-//! | `x`, `y`, `prey_x`, `prey_y` | i16 | [`Document::unit_m`] metres, at the end of the step, before any recovery |
-//! | `yaw`, `prey_yaw` | i16 | milliradians |
+//! | `x`, `y`, `movers[].x`, `movers[].y` | i16 | [`Document::unit_m`] metres, at the end of the step, before any recovery |
+//! | `yaw`, `movers[].yaw` | i16 | milliradians |
 //! | `state`, `next_state` | u32 | as the grid numbers them |
 //! | `action` | u8 | index into `actions` |
 //! | `flags` | u8 | 1 recover, 2 contact, 4 fallen, 8 explored |
@@ -18,6 +18,7 @@
 //!
 //! A track of more than [`MOST_TRACK_STEPS`] steps holds the first and the last half of as many: `spans` says which.
 
+mod checked;
 mod document;
 mod ground;
 mod html;
@@ -26,12 +27,13 @@ mod seed;
 mod shot;
 mod track;
 
-pub use document::{Document, Finding, RuleView, ScanShape, SettingView};
-pub use ground::{Ground, Outline};
+pub use checked::{Checked, Finding};
+pub use document::{Document, RuleView, ScanShape, SettingView};
+pub use ground::{Ground, MoverOutline, Outline};
 pub use html::{Page, page};
 pub use seed::{SeedData, SeedView, StateRow};
 pub use shot::{Shot, ShotMaker, StagePicture, shot_of};
-pub use track::{MOST_TRACK_STEPS, Moments, Track};
+pub use track::{MOST_TRACK_STEPS, Moments, MoverTrack, Track};
 
 #[cfg(test)]
 mod tests;

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::{ScanShape, Shot, ShotMaker};
 use crate::diagnostic::Result;
 use crate::experiment::{Ledger, Phase, Plan, Playback, StepReasons};
+use crate::geometry::Pose;
 use crate::report::base64;
 
 /// The most steps of a track; of more, the first and the last half of as many are kept.
@@ -41,10 +42,17 @@ pub struct Track {
     pub beam: String,
     pub nearest_beam: String,
     pub nearest: String,
-    pub prey_x: String,
-    pub prey_y: String,
-    pub prey_yaw: String,
+    pub movers: Vec<MoverTrack>,
     pub scan: String,
+}
+
+/// Where one thing that drives by itself was, in the order of the world file.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[allow(missing_docs, reason = "every field is documented in the table of the room")]
+pub struct MoverTrack {
+    pub x: String,
+    pub y: String,
+    pub yaw: String,
 }
 
 /// The bytes of a track while it is filled.
@@ -62,7 +70,7 @@ struct Columns {
     beam: Vec<u8>,
     nearest_beam: Vec<u8>,
     nearest: Vec<u8>,
-    prey: [Vec<u8>; 3],
+    movers: Vec<[Vec<u8>; 3]>,
     scan: Vec<u8>,
 }
 
@@ -100,6 +108,14 @@ impl Source<'_> {
         }
         let swaps = self.plan.swaps().map(|(from, _, plan, _)| (from as usize, places(plan)));
         std::iter::once((0, places(self.plan.first_leg()))).chain(swaps).collect()
+    }
+
+    /// Where everything that drives by itself was at the end of a step: they go by the clock of the world alone, which
+    /// begins with the phase.
+    fn movers_after(&self, step: usize) -> impl Iterator<Item = Pose> {
+        let (layout, settings) = (&self.plan.layout, &self.plan.settings);
+        let time_s = (step + 1) as f64 * settings.run.period_s * settings.movers.speed;
+        layout.movers.iter().map(move |mover| mover.pose_at(&layout.routes, time_s))
     }
 
     /// Plays the steps again for what is not recorded: scans and pictures.
@@ -151,14 +167,14 @@ impl Columns {
         self.nearest_beam.extend(record.nearest_beam.to_le_bytes());
         let nearest_mm = (record.nearest_m * 1000.0).round().clamp(0.0, 65_535.0) as u16;
         self.nearest.extend(nearest_mm.to_le_bytes());
-        if let Some([x_m, y_m, yaw_rad]) = record.prey {
-            let values = [place(f64::from(x_m)), place(f64::from(y_m)), short(1000.0 * f64::from(yaw_rad))];
-            self.prey.iter_mut().zip(values).for_each(|(column, value)| column.extend(value));
+        self.movers.resize_with(source.plan.layout.movers.len(), Default::default);
+        for (columns, pose) in self.movers.iter_mut().zip(source.movers_after(step)) {
+            let values = [place(pose.x_m), place(pose.y_m), short(1000.0 * pose.yaw_rad)];
+            columns.iter_mut().zip(values).for_each(|(column, value)| column.extend(value));
         }
     }
 
     fn finish(self, steps: u64, spans: Vec<[usize; 2]>) -> Track {
-        let [prey_x, prey_y, prey_yaw] = self.prey.map(|column| base64(&column));
         Track {
             steps,
             spans,
@@ -174,9 +190,11 @@ impl Columns {
             beam: base64(&self.beam),
             nearest_beam: base64(&self.nearest_beam),
             nearest: base64(&self.nearest),
-            prey_x,
-            prey_y,
-            prey_yaw,
+            movers: self
+                .movers
+                .iter()
+                .map(|[x, y, yaw]| MoverTrack { x: base64(x), y: base64(y), yaw: base64(yaw) })
+                .collect(),
             scan: base64(&self.scan),
         }
     }
@@ -188,8 +206,8 @@ impl Track {
     pub(super) fn bytes(&self) -> usize {
         let columns = [&self.x, &self.y, &self.yaw, &self.state, &self.next_state, &self.action, &self.flags];
         let others = [&self.reward, &self.fired, &self.beam, &self.nearest_beam, &self.nearest, &self.scan];
-        let prey = [&self.prey_x, &self.prey_y, &self.prey_yaw];
-        columns.into_iter().chain(others).chain(prey).map(String::len).sum()
+        let movers = self.movers.iter().flat_map(|mover| [&mover.x, &mover.y, &mover.yaw]);
+        columns.into_iter().chain(others).chain(movers).map(String::len).sum()
     }
 }
 

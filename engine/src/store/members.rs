@@ -54,13 +54,30 @@ fn member(plan: &Plan, index: usize, source: &SourceText) -> Result<Member> {
     Ok(member)
 }
 
+/// The files of those policies that the plan's script names and that are there, sound or not.
+#[must_use]
+pub fn policy_files(plan: &Plan) -> Vec<PathBuf> {
+    let folder = plan.behaviour.source().path.parent().unwrap_or(Path::new(""));
+    let files = plan.settings.policies.iter().map(|policy| first_file(&tried(folder, &policy.path)).cloned());
+    files.flatten().collect()
+}
+
+/// Where a policy may be, the likelier place first.
+fn tried(scripts: &Path, path: &str) -> [PathBuf; 2] {
+    let file = |path: PathBuf| if path.is_dir() { path.join("policy.toml") } else { path };
+    [file(scripts.join(path)), file(PathBuf::from(path))]
+}
+
+/// Only ordinary files: others may never end.
+fn first_file(tried: &[PathBuf]) -> Option<&PathBuf> {
+    tried.iter().find(|path| path.is_file())
+}
+
 /// The text of a policy: its path is meant from the script or, if it is not there, from where the user stands.
 fn find(plan: &Plan, index: usize, path: &str) -> Result<SourceText> {
     let folder = plan.behaviour.source().path.parent().unwrap_or(Path::new(""));
-    let file = |path: PathBuf| if path.is_dir() { path.join("policy.toml") } else { path };
-    let tried = [file(folder.join(path)), file(PathBuf::from(path))];
-    // Only ordinary files: others may never end.
-    let Some(found) = tried.iter().find(|path| path.is_file()) else {
+    let tried = tried(folder, path);
+    let Some(found) = first_file(&tried) else {
         let name = printable(&plan.settings.policies[index].name);
         let message =
             format!("policy \"{name}\" is not there: no file '{}'", printable(&tried[1].display().to_string()));

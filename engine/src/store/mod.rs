@@ -6,7 +6,7 @@ mod policy_file;
 mod run_file;
 
 pub use log::{LOG_FILE, MAGIC, RecordedRun, RunLog, read_log};
-pub use members::{load_members, members_from_texts};
+pub use members::{load_members, members_from_texts, policy_files};
 pub use policy_file::{StoredPolicy, policy_from_toml, policy_to_toml};
 pub use run_file::{Decider, StoredRun, run_to_toml};
 

@@ -8,12 +8,13 @@ use tokio::sync::watch;
 
 use crate::diagnostic::{Diagnostic, Result};
 use crate::experiment::{Learned, Ledger, Plan, TestFigures};
-use crate::page::{Document, SeedData, SeedView};
+use crate::lint::Report;
+use crate::page::{Checked, Document, Finding, SeedData, SeedView};
 
 /// One seed of a run.
 #[derive(Debug)]
 pub struct SeedRun {
-    /// What it learned.
+    /// What it learned; of a behaviour that combines policies nothing, in no steps.
     pub learned: Arc<Learned>,
     /// Steps of learning.
     pub learning: Arc<Ledger>,
@@ -27,10 +28,12 @@ impl SeedRun {
     /// The seed as the page's room reads it.
     #[must_use]
     pub fn data(&self) -> SeedData<'_> {
+        // Of a behaviour that combines policies nothing was learned.
+        let learned = Some(&self.learned).filter(|learned| learned.steps > 0);
         SeedData {
             seed: self.learned.seed,
-            tally: Some(&self.learned.tally),
-            policy: Some(&self.learned.policy),
+            tally: learned.map(|learned| &learned.tally),
+            policy: learned.map(|learned| &learned.policy),
             test: self.test.as_ref(),
             learning: &self.learning,
             tested: &self.tested,
@@ -55,6 +58,8 @@ enum Message<'a> {
     Working { text: &'a str },
     Failed { text: String, error: serde_json::Value },
     Run { save: u64, done: bool, text: &'a str, document: &'a Document, before: Option<&'a Before> },
+    Checked { save: u64, findings: &'a [Finding], checked: &'a Checked },
+    Unchecked { save: u64, text: String },
 }
 
 /// What the page draws behind a new run: the run of the save before.
@@ -73,6 +78,7 @@ pub(super) struct Posted {
 struct Written {
     number: u64,
     run: Option<(u64, Arc<str>)>,
+    checked: Option<(u64, Arc<str>)>,
     last: Option<(u64, Arc<str>)>,
     saved: Option<Arc<SavedRun>>,
     shown: Option<(u64, Before)>,
@@ -124,12 +130,34 @@ impl Board {
         let text = encode(&Message::Run { save: run.save, done, text, document, before })?;
         written.number += 1;
         written.run = Some((written.number, text));
-        written.last = None;
+        (written.checked, written.last) = (None, None);
         written.saved = Some(Arc::clone(run));
         let number = written.number;
         drop(written);
         self.news.send_replace(number);
         Ok(())
+    }
+
+    /// Says what a check of the shown run found.
+    pub(super) fn checked(&self, run: &SavedRun, report: &Report) {
+        let findings: Vec<Finding> = report.findings.iter().map(Finding::from).collect();
+        let checked = Checked::from(report);
+        self.post_check(&Message::Checked { save: run.save, findings: &findings, checked: &checked });
+    }
+
+    /// Says that the check of the shown run ended early.
+    pub(super) fn unchecked(&self, run: &SavedRun, fault: &Diagnostic) {
+        self.post_check(&Message::Unchecked { save: run.save, text: fault.message.clone() });
+    }
+
+    fn post_check(&self, message: &Message<'_>) {
+        let Ok(text) = encode(message) else { return };
+        let mut written = self.lock();
+        written.number += 1;
+        written.checked = Some((written.number, text));
+        let number = written.number;
+        drop(written);
+        self.news.send_replace(number);
     }
 
     /// The run that is shown, if its save has this number.
@@ -140,7 +168,7 @@ impl Board {
     /// What a page that knows all up to number `after` must get.
     pub(super) fn posted(&self, after: u64) -> Posted {
         let written = self.lock();
-        let all = [&written.run, &written.last].into_iter().flatten();
+        let all = [&written.run, &written.checked, &written.last].into_iter().flatten();
         Posted { messages: all.filter(|(number, _)| *number > after).cloned().collect() }
     }
 

@@ -10,7 +10,9 @@
 //! the token, and come from the page's own address.
 
 mod board;
+mod combined;
 mod files;
+mod findings;
 mod guard;
 mod relearn;
 mod server;

@@ -8,9 +8,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::board::{Board, SavedRun, SeedRun};
-use super::files::Files;
+use super::files::{Files, SETTLE};
 use super::session::Session;
-use crate::diagnostic::{Diagnostic, Kind, Result};
+use super::{combined, findings};
+use crate::diagnostic::{Diagnostic, Result};
 use crate::experiment::{Ledger, Overrides, Plan, TestRun, WINDOW_STEPS, in_parallel, test_into};
 use crate::filter::Catalogue;
 use crate::learner::Carry;
@@ -82,11 +83,11 @@ impl Asker {
 
 /// Learns after each save, on the thread that calls [`Relearner::serve`].
 pub struct Relearner {
-    settings: WatchSettings,
-    board: Arc<Board>,
+    pub(super) settings: WatchSettings,
+    pub(super) board: Arc<Board>,
     asker: Asker,
     asked: Receiver<Why>,
-    save: u64,
+    pub(super) save: u64,
     /// What goes on with the next save.
     session: Option<Session>,
 }
@@ -116,7 +117,8 @@ impl Relearner {
         let mut files = Files::new(move || {
             let _ = saves.send(());
         })?;
-        files.watch(self.watched())?;
+        files.watch([self.settings.behaviour.clone()])?;
+        files.watch_filters(&self.settings.filter_folders)?;
         let files = Arc::new(Mutex::new(files));
         std::thread::scope(|scope| {
             let (watched, asker) = (Arc::clone(&files), self.asker());
@@ -147,7 +149,14 @@ impl Relearner {
     }
 
     fn relearn(&mut self, why: Why, stop: &AtomicBool, files: &Mutex<Files>) -> Result<()> {
-        let (mut session, error) = match self.next_session(why, files) {
+        let plan = self.plan(files);
+        if let Ok(plan) = &plan
+            && !plan.settings.policies.is_empty()
+        {
+            self.session = None;
+            return combined::retest(self, plan, stop, files);
+        }
+        let (mut session, error) = match plan.and_then(|plan| self.next_session(plan, why)) {
             Ok(session) => (session, None),
             // The robots go on with the last good script; the error stays in sight.
             Err(error) => match self.session.take() {
@@ -164,10 +173,7 @@ impl Relearner {
     }
 
     /// What this save learns: from nothing, or what was learned before under another reward.
-    fn next_session(&mut self, why: Why, files: &Mutex<Files>) -> Result<Session> {
-        let mut plan = self.plan()?;
-        let world = plan.layout.source.path.clone();
-        files.lock().unwrap_or_else(PoisonError::into_inner).watch([world])?;
+    fn next_session(&mut self, mut plan: Plan, why: Why) -> Result<Session> {
         if self.settings.keep.is_some() {
             // A window of the curve is of one reward only.
             plan.settings.run.steps = plan.settings.run.steps.next_multiple_of(WINDOW_STEPS);
@@ -228,10 +234,11 @@ impl Relearner {
         });
         let run = self.show(run.plan.clone(), seeds.collect(), true, &format!("{text}, tested"), error)?;
         session.end();
-        match &self.settings.finished {
-            Some(finished) => finished(&run, tests, started.elapsed().as_secs_f64()),
-            None => Ok(()),
+        if let Some(finished) = &self.settings.finished {
+            finished(&run, tests, started.elapsed().as_secs_f64())?;
         }
+        findings::tell(&self.board, &run, stop);
+        Ok(())
     }
 
     fn test(&self, run: &SavedRun, room: u64, stop: &AtomicBool) -> Result<Vec<(TestRun, Ledger)>> {
@@ -244,15 +251,12 @@ impl Relearner {
         })
     }
 
-    fn plan(&self) -> Result<Plan> {
+    fn plan(&self, files: &Mutex<Files>) -> Result<Plan> {
         let behaviour = Arc::new(Behaviour::load(&self.settings.behaviour)?);
         let plan = Plan::with_filters(behaviour, &self.settings.overrides, (self.settings.filters)()?)?;
-        if plan.settings.policies.is_empty() {
-            return Ok(plan);
-        }
-        Diagnostic::new(Kind::Input, "E-WATCH-POLICIES", "this behaviour combines learned policies: it learns nothing")
-            .help("watch one of the behaviours that it combines, or run it: engine run SCRIPT")
-            .into()
+        let world = plan.layout.source.path.clone();
+        files.lock().unwrap_or_else(PoisonError::into_inner).watch([world])?;
+        Ok(plan)
     }
 
     /// Says what is being done, or what is wrong with the script that was saved while it is done.
@@ -263,7 +267,7 @@ impl Relearner {
         }
     }
 
-    fn show(
+    pub(super) fn show(
         &self,
         plan: Plan,
         seeds: Vec<SeedRun>,
@@ -278,23 +282,21 @@ impl Relearner {
         error.into_iter().for_each(|error| self.board.failed(error));
         Ok(run)
     }
-
-    fn watched(&self) -> Vec<PathBuf> {
-        let folders = self.settings.filter_folders.iter();
-        let libraries = folders.filter_map(|folder| std::fs::read_dir(folder).ok()).flatten().flatten();
-        std::iter::once(self.settings.behaviour.clone()).chain(libraries.map(|entry| entry.path())).collect()
-    }
 }
 
 /// Ends the running run and asks for the next one whenever a watched file has another content than before.
 fn follow(seen: &Receiver<()>, files: &Mutex<Files>, asker: &Asker, stop: &AtomicBool) {
+    let mut look_again = None;
     while !stop.load(Ordering::Relaxed) {
         match seen.recv_timeout(GLANCE) {
             Ok(()) => while seen.recv_timeout(QUIET).is_ok() {},
+            Err(RecvTimeoutError::Timeout) if look_again.is_some_and(|due| Instant::now() >= due) => {}
             Err(RecvTimeoutError::Timeout) => continue,
             Err(RecvTimeoutError::Disconnected) => return,
         }
-        if files.lock().unwrap_or_else(PoisonError::into_inner).changed() {
+        let found = files.lock().unwrap_or_else(PoisonError::into_inner).look();
+        look_again = found.unfinished.then(|| Instant::now() + SETTLE);
+        if found.saved {
             asker.ask(Why::Saved);
         }
     }

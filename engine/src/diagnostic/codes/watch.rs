@@ -14,8 +14,8 @@ pub(super) const PAGES: &[(&str, &str)] = &[
     ),
     (
         "E-WATCH-POLICIES",
-        "The script combines learned policies, so there is nothing to learn again when it is saved.\n\
-      Watch one of the behaviours whose policies it names, or test the combination: engine run SCRIPT.",
+        "The script combines learned policies, so nothing is learned that could be kept or written.\n\
+      Watch it without --keep and --out: each save tests the combination. engine run SCRIPT writes the folder of such a test.",
     ),
     (
         "E-WATCH-PORT",

@@ -41,12 +41,17 @@ function showDocument(doc, before) {
   })));
   $('seed').value = app.seed;
   script.draw(doc);
-  showFindings(doc);
+  checkedNow();
   showSettings(doc);
   setPhase(wasPhase);
   go(wasStep);
   complete();
   app.picked ||= app.live !== null;
+}
+
+function checkedNow() {
+  showChecked(app.doc, app.live !== null, (line_) => script.reveal(line_));
+  script.note(app.doc.findings);
 }
 
 function chooseSeed(index) {
@@ -60,7 +65,7 @@ function chooseSeed(index) {
 /** Asks for the steps of a seed that the document left out. */
 function complete() {
   const seed = seedView();
-  if (!app.live || seed.learning || seed.asked) return;
+  if (!app.live || seed.learning || seed.tested || seed.asked) return;
   seed.asked = true;
   const doc = app.doc;
   app.live.tracks(app.save, seed.seed).then((found) => {
@@ -81,7 +86,7 @@ function setPhase(phase) {
   }
   const { test } = seed;
   $('facts').replaceChildren(
-    'learned ', el('b', { text: seed.learned_at === null ? 'not yet' : `at step ${whole(seed.learned_at)}` }),
+    ...(seed.curve.length ? ['learned ', el('b', { text: seed.learned_at === null ? 'not yet' : `at step ${whole(seed.learned_at)}` })] : ['policies combined']),
     ...(test ? [' · test: ', el('b', { text: `${short(test.failures_per_1000)} failures` }), ' in 1,000 steps, ',
       el('b', { text: `${short(test.mean_speed)} m/s` }), ...(test.laps === null ? [] : [', ', el('b', { text: `${short(test.laps)} laps` })])] : []),
   );
@@ -235,6 +240,10 @@ function message(said) {
     $('status').textContent = said.text;
     app.save = said.save;
     showDocument(said.document, said.before);
+  } else if (app.doc && said.save === app.save) {
+    if (said.kind === 'checked') Object.assign(app.doc, { findings: said.findings, checked: said.checked });
+    else Object.assign(app.doc, { checked: { steps: 0, left_out: 0, exploits: null }, unchecked: said.text });
+    checkedNow();
   }
 }
 
@@ -249,7 +258,7 @@ function start() {
   $('seed').addEventListener('change', (event) => { app.picked = true; chooseSeed(Number(event.target.value)); event.target.blur(); });
   for (const button of $('phase').children) button.addEventListener('click', () => { setPhase(button.dataset.phase); go(0); });
   document.addEventListener('keydown', key);
-  const again = () => { readInk(); if (app.doc) { script.draw(app.doc); stale.base = true; stale.moment = true; } };
+  const again = () => { readInk(); if (app.doc) { script.draw(app.doc); script.note(app.doc.findings); stale.base = true; stale.moment = true; } };
   const sizes = new ResizeObserver(() => { stale.base = true; });
   for (const box of ['map', 'curve', 'timeline']) sizes.observe($(box));
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', again);

@@ -50,9 +50,9 @@ class Track {
     this.beam = new Uint16Array(bytes(raw.beam));
     this.nearestBeam = new Uint16Array(bytes(raw.nearest_beam));
     this.nearest = new Uint16Array(bytes(raw.nearest));
-    this.preyX = new Int16Array(bytes(raw.prey_x));
-    this.preyY = new Int16Array(bytes(raw.prey_y));
-    this.preyYaw = new Int16Array(bytes(raw.prey_yaw));
+    this.movers = raw.movers.map((mover) => ({
+      x: new Int16Array(bytes(mover.x)), y: new Int16Array(bytes(mover.y)), yaw: new Int16Array(bytes(mover.yaw)),
+    }));
     this.scan = new Uint8Array(bytes(raw.scan));
     this.count = this.x.length;
     const last = this.spans[this.spans.length - 1];

@@ -86,7 +86,7 @@ class WorldMap {
     pen.globalAlpha = 1;
   }
 
-  /** What moves: the trail, the laser's fan, the robot, the prey. */
+  /** What moves: the trail, the laser's fan, the robot, and what drives by itself. */
   drawOver(doc, track, step, share) {
     const sheet = fit(this.over);
     if (!sheet || !this.view || !track) return;
@@ -98,7 +98,7 @@ class WorldMap {
     pen.rect(...this.view.floor);
     pen.clip();
     this.trail(pen, doc, track, index, pose);
-    if (doc.world.prey && track.preyX.length) this.prey(pen, doc, track, index, share);
+    doc.world.movers.forEach((mover, number) => this.mover(pen, mover, moverPose(track, number, index, share, doc.unit_m)));
     this.fan(pen, doc, track, index, pose);
     this.robot(pen, doc, pose, track.flags[index]);
   }
@@ -172,13 +172,11 @@ class WorldMap {
     pen.restore();
   }
 
-  prey(pen, doc, track, index, share) {
-    const last = Math.max(0, index - 1);
-    const mix = (column) => column[last] + (column[index] - column[last]) * share;
+  mover(pen, mover, pose) {
     pen.save();
-    pen.translate(this.view.x(mix(track.preyX) * doc.unit_m), this.view.y(mix(track.preyY) * doc.unit_m));
-    pen.rotate(-track.preyYaw[index] / 1000);
-    for (const solid of doc.world.prey) {
+    pen.translate(this.view.x(pose.x), this.view.y(pose.y));
+    pen.rotate(-pose.yaw);
+    for (const solid of mover.solids) {
       pen.fillStyle = `rgb(${solid.colour.join(' ')})`;
       pen.strokeStyle = ink.text;
       pen.lineWidth = 1;
@@ -197,18 +195,26 @@ class WorldMap {
 /** `fn reward` speaks at nearly every step; it is no event to mark. */
 const marked = (doc, rule) => doc.rules[rule].value !== null;
 
-/** The pose a share of the way from the step before, where no recovery lies between. */
+/** The robot's pose a share of the way from the step before, where no recovery lies between. */
 function between(track, index, share, unit) {
-  const last = index - 1;
-  const apart = last < 0 || (track.flags[last] & RECOVER) || track.step(index) !== track.step(last) + 1;
-  const part = apart ? 1 : share;
-  const from = apart ? index : last;
-  let turn = track.yaw[index] - track.yaw[from];
+  const apart = index > 0 && (track.flags[index - 1] & RECOVER);
+  return mixed(track, track, index, apart ? 1 : share, unit);
+}
+
+/** The same of something that drives by itself, which no recovery moves. */
+function moverPose(track, number, index, share, unit) {
+  return mixed(track, track.movers[number], index, share, unit);
+}
+
+function mixed(track, poses, index, share, unit) {
+  const apart = index === 0 || track.step(index) !== track.step(index - 1) + 1;
+  const [from, part] = apart ? [index, 1] : [index - 1, share];
+  let turn = poses.yaw[index] - poses.yaw[from];
   if (turn > 3142) turn -= 6283;
   if (turn < -3142) turn += 6283;
   return {
-    x: (track.x[from] + (track.x[index] - track.x[from]) * part) * unit,
-    y: (track.y[from] + (track.y[index] - track.y[from]) * part) * unit,
-    yaw: (track.yaw[from] + turn * part) / 1000,
+    x: (poses.x[from] + (poses.x[index] - poses.x[from]) * part) * unit,
+    y: (poses.y[from] + (poses.y[index] - poses.y[from]) * part) * unit,
+    yaw: (poses.yaw[from] + turn * part) / 1000,
   };
 }

@@ -1,4 +1,4 @@
-// Why: the step in words, the causes of its window, the script with the lines that spoke, findings, settings.
+// Why: the step in words, the causes of its window, the script with the lines that spoke, settings.
 
 function chip(rule) {
   const made = el('span', { class: 'chip' });
@@ -121,20 +121,32 @@ class Script {
     }
   }
 
+  /** Marks the lines that a check found something in. */
+  note(findings) {
+    for (const { line: line_ } of this.lines) {
+      line_.classList.remove('noted');
+      line_.firstChild.removeAttribute('title');
+    }
+    for (const finding of findings) {
+      const line_ = this.lines[(finding.line ?? 0) - 1]?.line;
+      if (!line_) continue;
+      line_.classList.add('noted');
+      line_.firstChild.title = `${finding.code}: ${finding.message}`;
+    }
+  }
+
+  /** Shows one line, for a moment in another colour. */
+  reveal(number) {
+    const line_ = this.lines[number - 1]?.line;
+    if (!line_) return;
+    line_.scrollIntoView({ block: 'center' });
+    line_.classList.add('lit');
+    setTimeout(() => line_.classList.remove('lit'), 1500);
+  }
+
   wrong(number) {
     this.lines.forEach(({ line: line_ }, index) => line_.classList.toggle('wrong', index + 1 === number));
   }
-}
-
-function showFindings(doc) {
-  const box = $('findings');
-  if (!doc.findings.length) {
-    box.replaceChildren(el('p', { class: 'quiet', text: 'None.' }));
-    return;
-  }
-  box.replaceChildren(el('ul', {}, ...doc.findings.map((finding) => el('li', {},
-    el('b', { text: finding.code }), ` ${finding.line === null ? '' : `line ${finding.line}: `}${finding.message}`,
-    ...(finding.help ? [el('div', { class: 'quiet', text: finding.help })] : [])))));
 }
 
 function showSettings(doc) {

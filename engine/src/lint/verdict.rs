@@ -1,0 +1,105 @@
+//! Whether cheating pays: the cheapest cheat against driving on without a failure.
+
+use super::{Exploit, Exploits, Finding};
+use crate::experiment::{Plan, WINDOW_STEPS};
+
+/// A cheat that is brought back more often than this in 1,000 steps is none.
+const MOST_FAILURES: f64 = 20.0;
+
+/// What the cheapest cheat earns, held against driving on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// More: the reward can be had without getting anywhere.
+    Pays,
+    /// As much, as far as chance lets one tell: the reward does not say which is better.
+    Equal,
+    /// Less, or there is no cheat that gets by.
+    Loses,
+}
+
+/// Which behaviour is the cheapest cheat, and whether it pays. `largest` is the greatest reward of any step, either way.
+pub(super) fn judge(behaviours: &[Exploit], honest_per_400: f64, largest: f64) -> (Option<usize>, Verdict) {
+    let earns = |exploit: &Exploit| exploit.nowhere && exploit.failures_per_1000 <= MOST_FAILURES;
+    let idle = behaviours.iter().enumerate().filter(|(_, exploit)| earns(exploit));
+    let Some((index, cheat)) = idle.reduce(|a, b| if b.1.reward_per_400 > a.1.reward_per_400 { b } else { a }) else {
+        return (None, Verdict::Loses);
+    };
+    let scale = honest_per_400.abs().max(cheat.reward_per_400.abs());
+    // Less than one event in 400 steps is no difference.
+    let chance = 3.0 * WINDOW_STEPS as f64 * (cheat.variance / cheat.steps as f64).sqrt();
+    let sure = chance + largest.max(0.02 * scale);
+    let more = cheat.reward_per_400 - honest_per_400;
+    let verdict = match () {
+        () if more < -sure.min(0.5 * scale) => Verdict::Loses,
+        () if more > sure => Verdict::Pays,
+        () => Verdict::Equal,
+    };
+    (Some(index), verdict)
+}
+
+/// The verdict for a person.
+pub(super) fn sentence(cheat: Option<&Exploit>, verdict: Verdict, honest_per_400: f64) -> String {
+    let honest = figure(honest_per_400);
+    let Some(cheat) = cheat else {
+        return "No cheat gets by: whatever gets nowhere here fails more than 20 times in 1,000 steps.".to_owned();
+    };
+    let (name, earned) = (&cheat.behaviour, figure(cheat.reward_per_400));
+    let speed = match cheat.net_m_per_s {
+        Some(net) => format!("a net {:.2} m/s along the route", positive_zero(net, 100.0)),
+        None => format!("{:.2} m/s", cheat.speed_m_per_s),
+    };
+    let cost = match cheat.failures_per_1000 {
+        0.0 => speed,
+        failures => format!("{speed} and {} failures in 1,000", figure(failures)),
+    };
+    match verdict {
+        Verdict::Pays => format!(
+            "The reward can be had without getting anywhere: '{name}' earns {earned} in 400 steps, with {cost}; driving on \
+             without a failure earns {honest}."
+        ),
+        Verdict::Equal => format!(
+            "Nothing in the reward tells '{name}' from driving on: it earns {earned} in 400 steps, with {cost}; driving on \
+             without a failure earns {honest}."
+        ),
+        Verdict::Loses => format!(
+            "No cheat pays: '{name}', the cheapest, earns {earned} in 400 steps, with {cost}; driving on without a failure \
+             earns {honest}."
+        ),
+    }
+}
+
+/// The cheapest cheat as a finding, if it earns at least as much as driving on.
+pub(super) fn check(plan: &Plan, exploits: &Exploits, findings: &mut Vec<Finding>) {
+    let Some(cheat) = exploits.cheapest.map(|index| &exploits.behaviours[index]) else { return };
+    if exploits.verdict == Verdict::Loses || findings.iter().any(|finding| finding.code == "W-NO-CHOICE") {
+        return;
+    }
+    let outline = plan.behaviour.outline();
+    let rule = outline.rules.first().map(|rule| rule.condition_span.clone());
+    let span = outline.reward.clone().or(rule).unwrap_or(0..0);
+    let [cheats, honest] = [cheat.reward_per_400, exploits.honest_per_400].map(|value| format!("{value:.1}"));
+    let name = &cheat.behaviour;
+    let label = format!("'{name}' earns {cheats} in 400 steps, driving on without a failure {honest}");
+    let finding = if exploits.verdict == Verdict::Pays {
+        let message = format!("the reward can be had without getting anywhere: '{name}' earns more than driving on");
+        let help = "reward speed or progress, or punish what the robot does instead: \
+                    rule \"spinning\" when abs(action.angular) >= 0.6 for 6 seconds => -1;";
+        Finding::warning(plan, "W-EXPLOIT", span, message).say(label, help)
+    } else {
+        let message = format!("nothing in the reward tells '{name}' from driving on");
+        let help = "look at the way that it learns to drive (engine run), not at the reinforcement alone";
+        Finding::warning(plan, "W-EXPLOIT", span, message).say(label, help).as_note()
+    };
+    findings.push(finding);
+}
+
+/// At most one place, and none where it is 0.
+fn figure(value: f64) -> String {
+    positive_zero(value, 10.0).to_string()
+}
+
+/// Rounded to one part in `parts`; what rounds to 0 has no sign.
+fn positive_zero(value: f64, parts: f64) -> f64 {
+    (value * parts).round() / parts + 0.0
+}

@@ -1,0 +1,62 @@
+//! What a check of the script found, and what its reward can be had for.
+
+use serde::Serialize;
+
+use super::Document;
+use crate::lint::{Exploits, Report, Severity};
+
+/// Something that a check of the script found.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Finding {
+    /// Its code.
+    pub code: String,
+    /// How bad it is.
+    pub severity: Severity,
+    /// What is wrong.
+    pub message: String,
+    /// The line in the script, from 1, if it has one.
+    pub line: Option<usize>,
+    /// What was seen there.
+    pub label: Option<String>,
+    /// What to do.
+    pub help: Option<String>,
+}
+
+/// What trying the behaviour out came to; its findings stand in [`Document::findings`].
+#[derive(Debug, Clone, Serialize)]
+pub struct Checked {
+    /// Steps that were tried.
+    pub steps: u64,
+    /// How many findings there was no room for.
+    pub left_out: usize,
+    /// What the reward can be had for; null where policies are combined or a step failed.
+    pub exploits: Option<Exploits>,
+}
+
+impl From<&crate::lint::Finding> for Finding {
+    fn from(found: &crate::lint::Finding) -> Self {
+        let said = |words: &String| Some(words.clone()).filter(|words| !words.is_empty());
+        Self {
+            code: found.code.to_owned(),
+            severity: found.severity,
+            message: found.message.clone(),
+            line: Some(found.line).filter(|line| *line > 0),
+            label: said(&found.label),
+            help: said(&found.help),
+        }
+    }
+}
+
+impl From<&Report> for Checked {
+    fn from(report: &Report) -> Self {
+        Self { steps: report.steps, left_out: report.left_out, exploits: report.exploits.clone() }
+    }
+}
+
+impl Document {
+    /// The same with what a full check found, instead of what reading the script did.
+    #[must_use]
+    pub fn with_check(self, report: &Report) -> Self {
+        Self { findings: report.findings.iter().map(Finding::from).collect(), checked: Some(report.into()), ..self }
+    }
+}
