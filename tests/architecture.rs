@@ -21,7 +21,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("record", &["world", "experiment"]),
     ("report", &["world", "sensors", "experiment"]),
     ("page", &["world", "sensors", "filter", "state", "learner", "reward", "experiment", "lint", "report"]),
-    ("watch", &["world", "filter", "reward", "experiment", "report", "page"]),
+    ("watch", &["world", "filter", "learner", "reward", "robot", "experiment", "lint", "store", "report", "page"]),
     ("reproduce", &["world", "learner", "reward", "robot", "experiment", "report"]),
     ("pack", &["world", "filter", "robot", "learner", "reward", "experiment", "store", "report"]),
 ];

@@ -65,6 +65,13 @@ fn the_same_script_gives_the_same_report() {
 }
 
 #[test]
+fn a_check_that_is_stopped_finds_nothing() {
+    let plan = plan(&root().join("scripts/corridor.rhai")).unwrap();
+    assert!(lint::check_until(&plan, &true.into()).unwrap().is_none());
+    assert!(lint::check_until(&plan, &false.into()).unwrap().is_some());
+}
+
+#[test]
 fn spinning_is_shown_to_get_nowhere_and_driving_to_get_along() {
     let plan = plan(&root().join("scripts/corridor.rhai")).unwrap();
     let exploits = lint::check(&plan).unwrap().exploits.unwrap();

@@ -82,6 +82,22 @@ fn a_full_run_stays_under_three_mebibytes() {
 }
 
 #[test]
+fn a_run_that_is_checked_too_shows_what_its_reward_can_be_had_for() {
+    let bench = Bench::new();
+    bench.engine(&["run", "short.rhai"]);
+    assert!(document(&bench.read("runs/short/1/report.html"))["checked"].is_null());
+    let output = bench.engine(&["run", "short.rhai", "--check"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("checked:   0 errors, "), "{text}");
+    let page = document(&bench.read("runs/short/1/report.html"));
+    let report: serde_json::Value =
+        serde_json::from_slice(&bench.engine(&["check", "short.rhai", "--json"]).stdout).unwrap();
+    assert_eq!(page["checked"]["exploits"], report["exploits"]);
+    assert!(text.contains(report["exploits"]["sentence"].as_str().unwrap()), "{text}");
+    assert_eq!(page["findings"].as_array().unwrap().len(), report["findings"].as_array().unwrap().len());
+}
+
+#[test]
 fn many_seeds_share_a_page_that_begins_with_the_worst() {
     let bench = Bench::new();
     bench.engine(&["run", "short.rhai", "--seeds", "3"]);

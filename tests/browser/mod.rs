@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use chromium::Chromium;
 
-use crate::support::{Bench, SCRIPT, root};
+use crate::support::{Bench, SCRIPT, WORLD, root};
 
 const DESK: (u32, u32, bool) = (1280, 720, false);
 const DESK_DARK: (u32, u32, bool) = (1280, 720, true);
@@ -61,6 +61,48 @@ fn the_page_of_a_run_plays_scrubs_and_explains() {
 }
 
 #[test]
+fn all_that_drives_by_itself_is_drawn() {
+    let bench = Bench::new();
+    let mut world = WORLD.to_owned();
+    for (name, colour, offset_m) in [("pink", "[250, 20, 200]", 3.0), ("green", "[20, 230, 40]", 9.0)] {
+        world += &format!(
+            "[[material]]\nname = \"{name}\"\ncolour = {colour}\n[[mover]]\nname = \"{name}\"\nroute = \"lap\"\n\
+             speed_m_per_s = 0.1\noffset_m = {offset_m}\n\
+             boxes = [{{ centre_m = [0, 0, 0.2], size_m = [0.4, 0.4, 0.4], material = \"{name}\" }}]\n"
+        );
+    }
+    bench.write("worlds/small.toml", world);
+    bench.engine(&["run", "short.rhai"]);
+    let path = bench.path().join("runs/short/1/report.html");
+    let Some(mut page) = open(&format!("file://{}", path.display())) else { return };
+    // Where the pixels of a colour are on the canvas of what moves: their mean column.
+    let column = |page: &mut Chromium, colour: &str| {
+        page.value(&format!(
+            "(() => {{ const canvas = document.querySelectorAll('#map canvas')[1]; \
+             const {{ width, height }} = canvas; \
+             const pen = Object.assign(document.createElement('canvas'), {{ width, height }}).getContext('2d'); \
+             pen.drawImage(canvas, 0, 0); \
+             const {{ data }} = pen.getImageData(0, 0, width, height); \
+             let [sum, count] = [0, 0]; \
+             for (let at = 0; at < data.length; at += 4) {{ \
+             if ([{colour}].every((part, index) => data[at + index] === part)) {{ sum += (at / 4) % width; count += 1; }} }} \
+             return count > 20 ? sum / count : null; }})()"
+        ))
+    };
+    let step = "Number(document.querySelector('#moment b').textContent.replace(',', ''))";
+    page.wait_for(&format!("{step} === 0"));
+    let (pink, green) = ("250, 20, 200", "20, 230, 40");
+    let before = [pink, green].map(|colour| column(&mut page, colour).as_f64().expect(colour));
+    page.key("ArrowRight", 8);
+    page.wait_for(&format!("{step} === 100 || {step} === 101"));
+    page.value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))");
+    let after = [pink, green].map(|colour| column(&mut page, colour).as_f64().expect(colour));
+    assert!(after[0] > before[0] && after[1] != before[1], "{before:?} {after:?}");
+    page.picture(&pictures().join("two-movers.png"));
+    assert_eq!(page.complaints(), [] as [String; 0]);
+}
+
+#[test]
 fn a_hostile_script_is_only_text() {
     let bench = Bench::new();
     let evil = "</script><script>document.title='caught'</script><img src=x onerror=\\\"document.title='caught'\\\">";
@@ -102,5 +144,30 @@ fn a_save_redraws_the_live_page_and_a_bad_one_shows_its_error() {
     page.wait_for(&format!("{tested}.includes('tested')"));
     page.choose("seed", "1");
     page.wait_for("document.getElementById('map-note').textContent.startsWith('learning')");
+    assert_eq!(page.complaints(), [] as [String; 0]);
+}
+
+#[cfg(feature = "serve")]
+#[test]
+fn what_the_reward_can_be_had_for_appears_after_a_save() {
+    let served = crate::watch::served::Served::new(&[]);
+    let Some(mut page) = open(&served.address()) else { return };
+    let panel = "document.querySelector('.cheats')";
+    page.wait_for(&format!("!{panel}.hidden && {panel}.querySelectorAll('tbody tr').length >= 4"));
+    assert_eq!(page.value("document.querySelectorAll('#cheats .verdict.warning').length"), 0);
+    served.bench.write("short.rhai", format!("{SCRIPT}rule \"slow\" when action.linear < 0.1 => 1;\n"));
+    page.wait_for("document.querySelectorAll('#cheats .verdict.warning').length === 1");
+    let words = page.value("document.querySelector('#cheats .verdict').textContent");
+    assert!(words.as_str().unwrap().contains("can be had without getting anywhere"), "{words}");
+    // Whoever hardly moves is paid in every one of 400 steps.
+    assert_eq!(page.value("document.querySelector('#cheats tr.had td').textContent"), "+400");
+    assert_eq!(page.value("document.querySelector('#findings').textContent.includes('W-EXPLOIT')"), true);
+    assert_eq!(page.value("document.querySelectorAll('#script .noted').length > 0"), true);
+    for (name, size) in [("live-checked", DESK), ("live-checked-dark", DESK_DARK), ("live-checked-phone", PHONE)] {
+        page.size(size);
+        page.value("document.querySelector('.findings').scrollIntoView()");
+        page.picture(&pictures().join(format!("{name}.png")));
+        assert_eq!(page.value("document.documentElement.scrollWidth <= innerWidth"), true, "{name} is too wide");
+    }
     assert_eq!(page.complaints(), [] as [String; 0]);
 }

@@ -1,3 +1,5 @@
+/// What the page is told of the check, of combined policies and of filters.
+mod checked;
 /// What hostile requests get.
 mod hostile;
 /// What a reward that is swapped while the robots learn leaves.

@@ -22,8 +22,12 @@ impl Drop for Served {
 
 impl Served {
     pub(crate) fn new(more: &[&str]) -> Self {
-        let bench = Bench::new();
-        let mut arguments = vec!["watch", "short.rhai", "--seeds", "2", "--no-open"];
+        Self::of(Bench::new(), "short.rhai", more)
+    }
+
+    /// A behaviour of a bench.
+    pub(crate) fn of(bench: Bench, script: &str, more: &[&str]) -> Self {
+        let mut arguments = vec!["watch", script, "--seeds", "2", "--no-open"];
         arguments.extend(if more.is_empty() { &["--port", "0"] } else { more });
         let mut child = bench.command(&arguments).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
         let mut line = String::new();

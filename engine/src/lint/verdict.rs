@@ -103,3 +103,66 @@ fn figure(value: f64) -> String {
 fn positive_zero(value: f64, parts: f64) -> f64 {
     (value * parts).round() / parts + 0.0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn exploit(behaviour: &str, reward_per_400: f64, failures_per_1000: f64, nowhere: bool) -> Exploit {
+        Exploit {
+            behaviour: behaviour.to_owned(),
+            cheat: true,
+            reward_per_400,
+            speed_m_per_s: 0.05,
+            net_m_per_s: Some(-0.001),
+            spinning: 1.0,
+            failures_per_1000,
+            nowhere,
+            steps: 400,
+            rules: Vec::new(),
+            clean: 0.0,
+            variance: 0.0,
+        }
+    }
+
+    fn judged(behaviours: &[Exploit], honest_per_400: f64) -> (Option<usize>, Verdict, String) {
+        let (cheapest, verdict) = judge(behaviours, honest_per_400, 1.0);
+        (cheapest, verdict, sentence(cheapest.map(|index| &behaviours[index]), verdict, honest_per_400))
+    }
+
+    #[test]
+    fn the_cheapest_cheat_earns_most_of_those_that_get_nowhere_and_seldom_fail() {
+        let all = [
+            exploit("drive", 90.0, 0.0, false),
+            exploit("stand", 40.0, 2.5, true),
+            exploit("spin", 60.0, 0.0, true),
+            exploit("crash", 80.0, 20.5, true),
+        ];
+        let (cheapest, verdict, sentence) = judged(&all, 50.0);
+        assert_eq!((cheapest, verdict), (Some(2), Verdict::Pays));
+        assert_eq!(
+            sentence,
+            "The reward can be had without getting anywhere: 'spin' earns 60 in 400 steps, with a net 0.00 m/s along the \
+             route; driving on without a failure earns 50."
+        );
+    }
+
+    #[test]
+    fn less_than_one_event_is_no_difference() {
+        let all = [exploit("spin", -0.96, 2.5, true)];
+        let (_, verdict, sentence) = judged(&all, 0.0);
+        assert_eq!(verdict, Verdict::Loses, "half of what is at stake is much where next to nothing is");
+        assert!(sentence.starts_with("No cheat pays: 'spin', the cheapest, earns -1 in 400 steps, "), "{sentence}");
+        assert!(sentence.contains("along the route and 2.5 failures in 1,000; "), "{sentence}");
+        assert_eq!(judged(&[exploit("spin", 50.5, 0.0, true)], 50.0).1, Verdict::Equal);
+        assert_eq!(judged(&[exploit("spin", 49.5, 0.0, true)], 50.0).1, Verdict::Equal);
+        assert_eq!(judged(&[exploit("spin", 48.5, 0.0, true)], 50.0).1, Verdict::Loses);
+    }
+
+    #[test]
+    fn where_every_cheat_fails_too_often_there_is_none() {
+        let (cheapest, verdict, sentence) = judged(&[exploit("spin", 60.0, 21.0, true)], 50.0);
+        assert_eq!((cheapest, verdict), (None, Verdict::Loses));
+        assert!(sentence.starts_with("No cheat gets by"), "{sentence}");
+    }
+}

@@ -5,7 +5,8 @@ use std::sync::atomic::AtomicBool;
 
 use super::*;
 use crate::diagnostic::SourceText;
-use crate::experiment::{Ledger, Overrides, Plan, learn_into};
+use crate::experiment::{Ledger, Overrides, Phase, Plan, Playback, learn_into};
+use crate::report::base64;
 use crate::reward::Behaviour;
 use crate::settings::Settings;
 use crate::world::Layout;
@@ -39,10 +40,14 @@ closed = true
 "#;
 
 fn plan() -> Plan {
+    plan_in(WORLD)
+}
+
+fn plan_in(world: &str) -> Plan {
     let script =
         "world(\"w\");\nrule \"near\" when laser.nearest <= 0.25 => -1 then recover;\nfn reward(facts) {\n    0.1\n}\n";
     let behaviour = Arc::new(Behaviour::parse("short", SourceText::new("short.rhai", script)).unwrap());
-    let layout = Arc::new(Layout::parse(SourceText::new("w.toml", WORLD)).unwrap());
+    let layout = Arc::new(Layout::parse(SourceText::new("w.toml", world)).unwrap());
     let settings = Settings { ..behaviour.settings().clone() };
     let plan = Plan::with_layout(behaviour, settings, layout, Arc::new(crate::filter::Catalogue::linked_in())).unwrap();
     plan.with_changes(&Overrides { steps: Some(40), test_steps: Some(1), ..Overrides::default() }).unwrap()
@@ -100,6 +105,69 @@ fn a_seed_beyond_those_that_bring_their_steps_has_its_curve() {
     let steps: Vec<usize> = document.shots.iter().map(|shot| shot.step).collect();
     assert!(steps.len() <= 4 && steps[0] == 0 && steps.is_sorted(), "{steps:?}");
     assert_eq!(document.shots[0].state, document.shots[0].reasons.next_state.index);
+}
+
+#[test]
+fn everything_that_drives_by_itself_is_where_it_was_when_the_steps_are_played_again() {
+    let mover = |name: &str, speed: f64, offset: f64| {
+        format!(
+            "\n[[mover]]\nname = \"{name}\"\nroute = \"lap\"\nspeed_m_per_s = {speed}\noffset_m = {offset}\n\
+             boxes = [{{ centre_m = [0, 0, 0.2], size_m = [0.3, 0.2, 0.4], material = \"light\" }}]\n"
+        )
+    };
+    let plan = plan_in(&format!("{WORLD}{}{}", mover("first", 0.2, 8.0), mover("second", 0.4, 10.0)));
+    let names: Vec<_> =
+        Ground::new(&plan.layout).movers.into_iter().map(|mover| (mover.name, mover.solids.len())).collect();
+    assert_eq!(names, [("first".to_owned(), 1), ("second".to_owned(), 1)]);
+    let mut ledger = Ledger::new(&plan, 40);
+    let learned = learn_into(&plan, 1, &AtomicBool::new(false), &|_| (), &mut ledger).unwrap();
+    let off = Ledger::off();
+    let data = SeedData {
+        seed: 1,
+        tally: Some(&learned.tally),
+        policy: Some(&learned.policy),
+        test: None,
+        learning: &ledger,
+        tested: &off,
+    };
+    let document = Document::new(&plan, &[data], Moments { shots: 0, scans: false, seeds: None }).unwrap();
+    let track = document.seeds[0].learning.as_ref().unwrap();
+    let mut playback = Playback::new(&plan, 1, Phase::Learning, &ledger).unwrap();
+    let mut places = vec![[Vec::new(), Vec::new()]; 2];
+    while playback.advance().unwrap().is_some() {
+        for (solid, place) in playback.cycle().robot().world().moving().iter().zip(&mut places) {
+            for (column, metres) in place.iter_mut().zip([solid.centre.x, solid.centre.y]) {
+                column.extend(((metres / document.unit_m).round() as i16).to_le_bytes());
+            }
+        }
+    }
+    for (mover, [x, y]) in track.movers.iter().zip(&places) {
+        assert_eq!((&mover.x, &mover.y), (&base64(x), &base64(y)));
+    }
+    assert_ne!(track.movers[0].x, track.movers[1].x);
+}
+
+#[test]
+fn a_full_check_replaces_what_reading_found() {
+    let plan = plan();
+    let document = Document::without_seeds(&plan).unwrap();
+    assert!(document.checked.is_none());
+    let span = 0..0;
+    let mut finding = crate::lint::Finding::warning(&plan, "W-UNIT", span, "nothing reads it").say("", "");
+    finding.line = 0;
+    let report = crate::lint::Report {
+        behaviour: "short".to_owned(),
+        world: "w".to_owned(),
+        steps: 6800,
+        findings: vec![finding],
+        left_out: 2,
+        exploits: None,
+    };
+    let document = document.with_check(&report);
+    let [found] = document.findings.as_slice() else { panic!() };
+    assert_eq!((found.line, &found.label, &found.help), (None, &None, &None));
+    let checked = document.checked.unwrap();
+    assert_eq!((checked.steps, checked.left_out), (6800, 2));
 }
 
 #[test]

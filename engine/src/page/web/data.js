@@ -103,7 +103,7 @@ const NO_BEAM = 65535;
 const whole = (number) => Math.round(number).toLocaleString('en-US');
 function short(number) {
   if (number === null || number === undefined) return '–';
-  const text = Number(number).toFixed(Math.abs(number) >= 100 ? 0 : 2).replace(/\.?0+$/, '');
+  const text = Math.abs(number) >= 100 ? Number(number).toFixed(0) : Number(number).toFixed(2).replace(/\.?0+$/, '');
   return (text === '-0' ? '0' : text).replace('-', '−');
 }
 const signed = (number) => (number > 0 ? '+' : '') + short(number);

@@ -33,7 +33,7 @@ function showFindings(doc, waits, goLine) {
       ...(finding.line === null ? [] : [el('button', {
         type: 'button', class: 'link', text: `line ${finding.line}`, onclick: () => goLine(finding.line),
       }), ' ']),
-      el('span', { class: 'quiet', text: finding.code }),
+      el('span', { class: 'quiet code', text: finding.code }),
       ...(finding.label ? [el('div', { text: finding.label })] : []),
       ...(finding.help ? [el('div', { class: 'quiet', text: finding.help })] : []))));
   const { checked } = doc;
@@ -48,7 +48,7 @@ function showCheats(exploits) {
   const { behaviours, coverage, cheapest, verdict } = exploits;
   const bad = verdict === 'pays' ? 'warning' : verdict === 'equal' ? 'note' : null;
   const head = [
-    ['behaviour', ''], ['reward', 'per 400 steps'], ['failures', 'per 1,000 steps'], ['speed', 'm/s'], ['net', 'm/s'], ['spinning', '% of the time'],
+    ['behaviour', ''], ['reward', 'per 400 steps'], ['failures', 'per 1,000'], ['speed', 'm/s'], ['net', 'm/s'], ['spinning', '%'],
   ];
   const titles = [
     '', 'the sum of all rewards in 400 steps', 'how often the script asks for recovery in 1,000 steps', 'path length over time',
@@ -64,7 +64,7 @@ function showCheats(exploits) {
     el('td', { text: place(one.net_m_per_s) }),
     el('td', { text: whole(100 * one.spinning) })));
   $('cheats').replaceChildren(
-    el('p', { class: `verdict ${bad ?? 'fine'}` }, ...(bad ? [mark(bad, bad)] : []), el('span', { text: exploits.sentence })),
+    el('p', { class: `verdict ${bad ?? 'fine'}` }, ...(bad ? [mark(bad, bad)] : []), el('span', { text: exploits.sentence.replace(/ -(?=\d)/g, ' −') })),
     el('table', {},
       el('thead', {}, el('tr', {}, ...head.map(([name, unit], at) => el('th', { scope: 'col', title: titles[at] || undefined },
         name, ...(unit ? [el('small', { text: unit })] : []))))),

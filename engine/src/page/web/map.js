@@ -1,6 +1,7 @@
 // The world from above: what stands on one canvas, what moves on another.
 
 const TRAIL_STEPS = 400;
+const MANY_MARKS = 200;
 
 class WorldMap {
   constructor(box) {
@@ -34,7 +35,7 @@ class WorldMap {
     }
     if (track) this.marks(pen, doc, track, litRule);
     pen.restore();
-    for (const at of ticks(x0, x1, spanX / 70)) if (this.view.x(at) < fromX + spanX - 2) label(pen, short(at), this.view.x(at), fromY + spanY + 14, 'center');
+    for (const at of ticks(x0, x1, spanX / 70)) if (this.view.x(at) < fromX + spanX - 8) label(pen, short(at), this.view.x(at), fromY + spanY + 14, 'center');
     for (const at of ticks(y0, y1, spanY / 60)) label(pen, short(at), fromX - 6, this.view.y(at), 'right', 'middle');
     label(pen, 'm', fromX + spanX + 5, fromY + spanY + 14);
   }
@@ -71,15 +72,20 @@ class WorldMap {
   }
 
   marks(pen, doc, track, litRule) {
-    for (let index = 0; index < track.count; index += 1) {
-      for (let rule = 0; rule < doc.rules.length; rule += 1) {
-        if (!track.fired(index, rule) || !marked(doc, rule)) continue;
-        if (litRule !== null && litRule !== rule) continue;
+    const shown = doc.rules.map((_, rule) => rule).filter((rule) => marked(doc, rule) && (litRule === null || litRule === rule));
+    for (const rule of shown) {
+      let count = 0;
+      for (let index = 0; index < track.count; index += 1) count += track.fired(index, rule);
+      // What fires at every turn is a shade; what fires seldom is an event.
+      const crowd = count > MANY_MARKS;
+      const strength = litRule === rule ? 0.85 : 0.5;
+      pen.fillStyle = ruleInk(rule);
+      pen.globalAlpha = crowd ? Math.max(0.12, strength * Math.sqrt(MANY_MARKS / count)) : strength;
+      for (let index = 0; index < track.count; index += 1) {
+        if (!track.fired(index, rule)) continue;
         const [x, y] = [this.view.x(track.x[index] * doc.unit_m), this.view.y(track.y[index] * doc.unit_m)];
         pen.beginPath();
-        pen.arc(x, y, litRule === rule ? 4 : 2.5, 0, 2 * Math.PI);
-        pen.fillStyle = ruleInk(rule);
-        pen.globalAlpha = litRule === rule ? 0.85 : 0.5;
+        pen.arc(x, y, crowd ? 2 : litRule === rule ? 4 : 2.5, 0, 2 * Math.PI);
         pen.fill();
       }
     }
