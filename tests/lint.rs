@@ -67,8 +67,8 @@ fn the_same_script_gives_the_same_report() {
 #[test]
 fn a_check_that_is_stopped_finds_nothing() {
     let plan = plan(&root().join("scripts/corridor.rhai")).unwrap();
-    assert!(lint::check_until(&plan, &true.into()).unwrap().is_none());
-    assert!(lint::check_until(&plan, &false.into()).unwrap().is_some());
+    assert!(lint::check_until(&plan, 0, &true.into()).unwrap().is_none());
+    assert!(lint::check_until(&plan, 1, &false.into()).unwrap().is_some());
 }
 
 #[test]

@@ -51,8 +51,8 @@ fn print(console: &mut Console, plan: &Plan, report: &Report) -> std::result::Re
 }
 
 /// Checks the behaviour of a run that is over; nothing if it was stopped.
-pub(super) fn beside_a_run(plan: &Plan, stop: &AtomicBool, console: &Console) -> Option<Report> {
-    lint::check_until(plan, stop).unwrap_or_else(|fault| {
+pub(super) fn beside_a_run(plan: &Plan, threads: usize, stop: &AtomicBool, console: &Console) -> Option<Report> {
+    lint::check_until(plan, threads, stop).unwrap_or_else(|fault| {
         // The run itself is done, and its results are worth keeping.
         console.note(&format!("the check ended early: {}", fault.message));
         None

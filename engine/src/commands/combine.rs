@@ -45,7 +45,8 @@ pub(super) fn run(
     }
     RunFolder::create(path, plan, members, arguments.seed)?;
     let stop = on_ctrl_c()?;
-    let results = in_parallel(seeds, arguments.threads.unwrap_or(0) as usize, |seed| {
+    let threads = arguments.threads.unwrap_or(0) as usize;
+    let results = in_parallel(seeds, threads, |seed| {
         let started = Instant::now();
         let mut log = RunLog::new(plan);
         let mut keep = |cycle: &Cycle<SimulatedRobot>, step: &Step| log.test.add(cycle, step, false);
@@ -54,7 +55,7 @@ pub(super) fn run(
         summary.log_sha256 = Some(log.sha256());
         Ok(SeedResult { tested, summary, log })
     })?;
-    let checked = if arguments.check { check::beside_a_run(plan, &stop, console) } else { None };
+    let checked = if arguments.check { check::beside_a_run(plan, threads, &stop, console) } else { None };
     let good = if let [result] = results.as_slice() {
         write_seed(path, plan, members, result, checked.as_ref())?;
         console.json(&result.summary)?;

@@ -34,7 +34,7 @@ pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::resul
     let stop = on_ctrl_c()?;
     let threads = arguments.threads.unwrap_or(0) as usize;
     let results = learn_all(&plan, &folder, &seeds, threads, &stop, console)?;
-    let checked = if arguments.check { check::beside_a_run(&plan, &stop, console) } else { None };
+    let checked = if arguments.check { check::beside_a_run(&plan, threads, &stop, console) } else { None };
     folder.write(&plan, &results, checked.as_ref())?;
     if let (Some(path), [SeedResult { log: Some(log), .. }]) = (&arguments.record, results.as_slice()) {
         let phases = [(Phase::Learning, &log.learning), (Phase::Test, &log.test)];

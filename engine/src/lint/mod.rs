@@ -60,24 +60,25 @@ impl Report {
 /// # Errors
 /// If a sensor or a filter fails, or a limit stops the script; any other failure of it in a step is a finding.
 pub fn check(plan: &Plan) -> Result<Report> {
-    look(plan, &AtomicBool::new(false))
+    look(plan, 0, &AtomicBool::new(false))
 }
 
-/// The same, until `stop` is set: then nothing.
+/// The same on so many threads (0: one for each core), until `stop` is set: then nothing.
 ///
 /// # Errors
 /// As [`check`].
-pub fn check_until(plan: &Plan, stop: &AtomicBool) -> Result<Option<Report>> {
-    let report = look(plan, stop)?;
+pub fn check_until(plan: &Plan, threads: usize, stop: &AtomicBool) -> Result<Option<Report>> {
+    let report = look(plan, threads, stop)?;
     Ok((!stop.load(Ordering::Relaxed)).then_some(report))
 }
 
 /// What is found once `stop` is set means nothing.
-fn look(plan: &Plan, stop: &AtomicBool) -> Result<Report> {
+fn look(plan: &Plan, threads: usize, stop: &AtomicBool) -> Result<Report> {
     let mut findings = read(plan);
     let (mut steps, mut exploits) = (0, None);
     if plan.settings.policies.is_empty() {
-        let tried = Trial::run(plan, stop).and_then(|mut trial| Ok((Exploits::find(plan, &mut trial, stop)?, trial)));
+        let tried = Trial::run(plan, threads, stop)
+            .and_then(|mut trial| Ok((Exploits::find(plan, &mut trial, threads, stop)?, trial)));
         match tried {
             Ok((found, trial)) => {
                 steps = trial.steps();

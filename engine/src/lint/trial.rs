@@ -74,8 +74,8 @@ impl Trial {
     ///
     /// # Errors
     /// If a sensor, a filter or the script fails.
-    pub fn run(plan: &Plan, stop: &AtomicBool) -> Result<Self> {
-        let drives = in_parallel(&[0, 1], 2, |kind| match kind {
+    pub fn run(plan: &Plan, threads: usize, stop: &AtomicBool) -> Result<Self> {
+        let drives = in_parallel(&[0, 1], threads, |kind| match kind {
             0 => random(plan, stop).map(|drive| (drive.steps, drive.rules, None)),
             _ => learning(plan, stop).map(|(steps, rules, policy)| (steps, rules, Some(policy))),
         })?;

@@ -42,7 +42,7 @@ pub(super) fn retest(again: &Relearner, plan: Plan, stop: &AtomicBool, files: &M
     let tested_s = started.elapsed().as_secs_f64();
     let text = format!("save {}: combined policies tested in {tested_s:.2} s", again.save);
     let run = again.show(plan, tested, true, &text, None)?;
-    findings::tell(&again.board, &run, stop);
+    findings::tell(&again.board, &run, again.settings.threads, stop);
     Ok(())
 }
 

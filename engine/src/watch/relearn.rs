@@ -237,7 +237,7 @@ impl Relearner {
         if let Some(finished) = &self.settings.finished {
             finished(&run, tests, started.elapsed().as_secs_f64())?;
         }
-        findings::tell(&self.board, &run, stop);
+        findings::tell(&self.board, &run, self.settings.threads, stop);
         Ok(())
     }
 
