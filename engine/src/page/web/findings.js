@@ -19,8 +19,14 @@ function showChecked(doc, live, goLine) {
   const exploits = checked ? checked.exploits : null;
   document.querySelector('.cheats').hidden = !exploits && !waits;
   document.querySelector('main').classList.toggle('unchecked', !exploits && !waits);
+  // The table of the save before stays, pale, until the new one comes: nothing jumps.
+  const old = waits && $('cheats').querySelector('table') !== null;
+  $('cheats').classList.toggle('old', old);
+  $('cheats-note').textContent = old ? 'of the save before; checking …' : 'driven in the simulator';
+  $('cheats-note').classList.toggle('busy', old);
   if (exploits) showCheats(exploits);
-  else if (waits) {
+  else if (!waits) $('cheats').replaceChildren();
+  else if (!old) {
     $('cheats').replaceChildren(el('p', { class: 'quiet', text: 'The best behaviour for this reward and the usual cheats are tried out after the test.' }));
   }
 }
