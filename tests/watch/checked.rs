@@ -67,6 +67,17 @@ fn combined_policies_are_tested_on_each_save_of_the_script_and_of_a_policy() {
 }
 
 #[test]
+fn where_nothing_is_learned_nothing_can_be_kept() {
+    let bench = Bench::new();
+    bench
+        .write("both.rhai", format!("policy(\"one\", \"runs/short/1\"); policy(\"two\", \"runs/other/1\");\n{SCRIPT}"));
+    let served = Served::of(bench, "both.rhai", &["--port", "0", "--out", "kept"]);
+    let failed = message(&mut served.socket(), |said| said["kind"] == "failed");
+    assert_eq!(failed["error"]["code"], "E-WATCH-POLICIES");
+    assert!(failed["text"].as_str().unwrap().contains("leave out --keep and --out"), "{failed}");
+}
+
+#[test]
 fn a_filter_that_comes_later_is_noticed_once_it_is_whole() {
     let bench = Bench::new();
     bench.write("filters/readme.txt", "filters go here");

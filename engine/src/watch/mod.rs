@@ -6,6 +6,8 @@
 //!   browser <--> socket.rs, guard.rs, server.rs (one thread) --------+
 //! ```
 //!
+//! What learned is tested, then checked (`findings.rs`); policies that a script combines are only tested (`combined.rs`).
+//!
 //! Learning writes to the board and never waits for a reader. The server listens on loopback only; whoever asks must know
 //! the token, and come from the page's own address.
 

@@ -150,11 +150,9 @@ impl Relearner {
 
     fn relearn(&mut self, why: Why, stop: &AtomicBool, files: &Mutex<Files>) -> Result<()> {
         let plan = self.plan(files);
-        if let Ok(plan) = &plan
-            && !plan.settings.policies.is_empty()
-        {
+        if plan.as_ref().is_ok_and(|plan| !plan.settings.policies.is_empty()) {
             self.session = None;
-            return combined::retest(self, plan, stop, files);
+            return combined::retest(self, plan?, stop, files);
         }
         let (mut session, error) = match plan.and_then(|plan| self.next_session(plan, why)) {
             Ok(session) => (session, None),
