@@ -62,7 +62,7 @@ function showCheats(exploits) {
   ];
   const place = (value) => (value === null ? '–' : (Math.abs(value) < 0.005 ? 0 : value).toFixed(2).replace('-', '−'));
   const rows = behaviours.map((one, index) => el('tr', { class: index === cheapest && bad ? `had ${bad}` : '' },
-    el('th', { scope: 'row' }, one.behaviour,
+    el('th', { scope: 'row' }, one.behaviour.replace(/(\d) s$/, '$1\u00a0s'),
       ...(one.nowhere ? [el('small', {}, ...(index === cheapest && bad ? [mark(bad, 'earns as much as driving on')] : []), 'gets nowhere')] : [])),
     el('td', { text: signed(one.reward_per_400) }),
     el('td', { text: short(one.failures_per_1000) }),
