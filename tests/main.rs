@@ -53,6 +53,9 @@ mod reproduce;
 mod run_folder;
 /// Every script and world that ships can be used, and the reference pages are current.
 mod shipped;
+/// The live view in the terminal: its screen, its keys, and itself in a pseudo terminal.
+#[cfg(feature = "tui")]
+mod terminal;
 /// The live page by raw sockets: what is refused, what is told.
 #[cfg(feature = "serve")]
 mod watch;

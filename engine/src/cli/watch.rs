@@ -12,7 +12,8 @@ use super::{FilterSources, count, seed};
                         A script that is saved with a mistake ends nothing: the page shows the error until the next save.\n\
                         With --keep, a swap of the reward stands in the log of the run, so that engine replay DIR --verify \
                         does it again.\n\
-                        Exit status: 0 ended with Ctrl-C; 2 usage; 3 bad script to begin with; 4 no free port; \
+                        With --tui the terminal shows it too: the error in place, the last good run above it.\n\
+                        Exit status: 0 ended with Ctrl-C or q; 2 usage; 3 bad script to begin with; 4 no free port; \
                         5 refused for trust; 6 files and disk."
 )]
 // Without the feature nothing reads them.
@@ -49,6 +50,9 @@ pub(crate) struct WatchArguments {
     /// The port of the page; the next free one if it is taken, any for 0
     #[arg(long, default_value = "8400", value_name = "N")]
     pub(crate) port: u16,
+    /// Show the same in this terminal too, and open no browser; ? lists the keys, q ends
+    #[arg(long, conflicts_with = "json")]
+    pub(crate) tui: bool,
     /// Do not open the browser
     #[arg(long)]
     pub(crate) no_open: bool,

@@ -1,14 +1,15 @@
-//! `engine watch`: learns again on every save, and shows the result on a page in the browser.
+//! `engine watch`: learns again on every save, and shows the result on a page in the browser, or in the terminal.
 
 use crate::cli::WatchArguments;
 use crate::console::{Console, ConsoleError};
 
 #[cfg(not(feature = "serve"))]
-pub(crate) fn run(_: &WatchArguments, _: &mut Console) -> Result<u8, ConsoleError> {
+pub(crate) fn run(arguments: &WatchArguments, _: &mut Console) -> Result<u8, ConsoleError> {
     use engine::diagnostic::{Diagnostic, Kind};
     let message = "this program was built without the live page";
     let error = Diagnostic::new(Kind::Usage, "E-WATCH-FEATURE", message);
-    Err(Box::new(error.help("build it in: cargo build --release --features serve")).into())
+    let feature = if arguments.tui { "tui" } else { "serve" };
+    Err(Box::new(error.help(format!("build it in: cargo build --release --features {feature}"))).into())
 }
 
 #[cfg(feature = "serve")]
@@ -17,6 +18,14 @@ pub(crate) fn run(arguments: &WatchArguments, console: &mut Console) -> Result<u
     use engine::watch::{Board, Relearner, WatchSettings, listen};
     use std::sync::Arc;
 
+    #[cfg(feature = "tui")]
+    if arguments.tui {
+        engine::watch::terminal::require()?;
+    }
+    #[cfg(not(feature = "tui"))]
+    if arguments.tui {
+        return Err(without_terminal());
+    }
     // What is wrong from the start is said here; what is saved wrong later, on the page.
     super::sources::catalogue(&arguments.filters)?;
     engine::reward::Behaviour::load(&arguments.behaviour)?;
@@ -39,7 +48,11 @@ pub(crate) fn run(arguments: &WatchArguments, console: &mut Console) -> Result<u
         filters: Box::new(move || super::sources::catalogue(&sources)),
     };
     let relearner = Relearner::new(settings, Arc::clone(&board));
-    let address = listen(board, relearner.asker(), arguments.port)?;
+    let address = listen(Arc::clone(&board), relearner.asker(), arguments.port)?;
+    #[cfg(feature = "tui")]
+    if arguments.tui {
+        return in_terminal(relearner, &board, &address.url, &stop);
+    }
     console.json(&serde_json::json!({ "address": address.url, "port": address.port }))?;
     if address.port != arguments.port && arguments.port != 0 {
         console.note(&format!("port {} is taken: the page is on port {}", arguments.port, address.port));
@@ -85,6 +98,41 @@ fn finished(out: std::path::PathBuf) -> engine::watch::Finished {
         let results = run.seeds.iter().zip(tests).map(result).collect::<engine::diagnostic::Result<Vec<_>>>()?;
         folder.write(plan, &results, None)
     })
+}
+
+/// Learns on this thread and shows it on another; whichever ends, ends the other.
+#[cfg(feature = "tui")]
+fn in_terminal(
+    relearner: engine::watch::Relearner,
+    board: &engine::watch::Board,
+    url: &str,
+    stop: &std::sync::Arc<std::sync::atomic::AtomicBool>,
+) -> Result<u8, ConsoleError> {
+    use std::sync::atomic::{AtomicBool, Ordering};
+
+    /// Learning may end by a panic: the terminal must not go on alone.
+    struct Ended<'a>(&'a AtomicBool);
+    impl Drop for Ended<'_> {
+        fn drop(&mut self) {
+            self.0.store(true, Ordering::Relaxed);
+        }
+    }
+    let asker = relearner.asker();
+    std::thread::scope(|scope| {
+        let shown = scope.spawn(|| engine::watch::terminal::show(board, &asker, url, stop));
+        let ended = Ended(stop);
+        let served = relearner.serve(stop);
+        drop(ended);
+        let shown = shown.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        served.and(shown).map(|()| 0).map_err(ConsoleError::from)
+    })
+}
+
+#[cfg(all(feature = "serve", not(feature = "tui")))]
+fn without_terminal() -> ConsoleError {
+    use engine::diagnostic::{Diagnostic, Kind};
+    let error = Diagnostic::new(Kind::Usage, "E-WATCH-TUI", "this program was built without the terminal's live view");
+    ConsoleError::Failed(Box::new(error.help("build it in: cargo build --release --features tui")))
 }
 
 /// Opens the browser if there is one; the address is printed anyhow.

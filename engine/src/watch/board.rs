@@ -1,6 +1,7 @@
-//! What the page is told: the last good run, the error after it, what is being done. Written by the one thread that learns,
-//! read by the server; nobody waits for a reader.
+//! What the page and the terminal are told: the last good run, the error after it, what is being done. Written by the one
+//! thread that learns, read by the server and the terminal; nobody waits for a reader.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use serde::Serialize;
@@ -68,6 +69,32 @@ struct Before {
     seeds: Vec<SeedView>,
 }
 
+/// What a reader inside this program is shown; cheap to copy.
+#[derive(Clone, Default)]
+pub struct Shown {
+    /// Grows with everything that is new.
+    pub number: u64,
+    /// The last good run.
+    pub run: Option<ShownRun>,
+    /// What is being done, or how the last run went.
+    pub text: Arc<str>,
+    /// Whether something is being learned or tested now.
+    pub busy: bool,
+    /// What is wrong with the last save, if it could not be learned.
+    pub error: Option<Arc<Diagnostic>>,
+}
+
+/// A run with what is drawn beside it.
+#[derive(Clone)]
+pub struct ShownRun {
+    /// The run.
+    pub run: Arc<SavedRun>,
+    /// The plan's side of its document: world, rules, findings; no seeds.
+    pub document: Arc<Document>,
+    /// The curves of the save before, one for each seed.
+    pub before: Option<Arc<[Vec<f64>]>>,
+}
+
 /// The messages that a page which comes now must get, oldest first; each with its number.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Posted {
@@ -83,29 +110,60 @@ struct Written {
     saved: Option<Arc<SavedRun>>,
     shown: Option<(u64, Before)>,
     before: Option<Before>,
+    told: Shown,
+}
+
+impl Written {
+    fn tell(&mut self, run: &Arc<SavedRun>, done: bool, text: &str, document: &Document) {
+        let document = Arc::new(Document { seeds: Vec::new(), ..document.clone() });
+        let before = self.before.as_ref().map(|before| before.seeds.iter().map(|seed| seed.curve.clone()).collect());
+        let run = ShownRun { run: Arc::clone(run), document, before };
+        self.told = Shown { number: 0, run: Some(run), text: text.into(), busy: !done, error: None };
+    }
 }
 
 /// The board.
 pub struct Board {
     written: Mutex<Written>,
     news: watch::Sender<u64>,
+    seeds_done: AtomicUsize,
 }
 
 impl Default for Board {
     fn default() -> Self {
-        Self { written: Mutex::default(), news: watch::Sender::new(0) }
+        Self { written: Mutex::default(), news: watch::Sender::new(0), seeds_done: AtomicUsize::new(0) }
     }
 }
 
 impl Board {
     /// Says what is being done.
     pub fn working(&self, text: &str) {
-        self.post(&Message::Working { text });
+        self.seeds_done.store(0, Ordering::Relaxed);
+        self.post(&Message::Working { text }, |told| (told.text, told.busy) = (text.into(), true));
+    }
+
+    /// Counts a seed of the running run that has learned all its steps.
+    pub fn seed_done(&self) {
+        self.seeds_done.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// How many seeds the running run has learned so far.
+    #[must_use]
+    pub fn seeds_done(&self) -> usize {
+        self.seeds_done.load(Ordering::Relaxed)
+    }
+
+    /// Everything, if anything is newer than number `after`.
+    #[must_use]
+    pub fn shown(&self, after: u64) -> Option<Shown> {
+        let written = self.lock();
+        (written.number > after).then(|| Shown { number: written.number, ..written.told.clone() })
     }
 
     /// Says that a save could not be used; the last good run stays.
     pub fn failed(&self, error: &Diagnostic) {
-        self.post(&Message::Failed { text: error.render(false), error: error.to_json() });
+        let message = Message::Failed { text: error.render(false), error: error.to_json() };
+        self.post(&message, |told| (told.error, told.busy) = (Some(Arc::new(error.clone())), false));
     }
 
     /// Shows a run; `done` if its test is over too.
@@ -126,6 +184,7 @@ impl Board {
             _ => {}
         }
         written.shown = Some((run.save, views(document)));
+        written.tell(run, done, text, document);
         let before = written.before.as_ref();
         let text = encode(&Message::Run { save: run.save, done, text, document, before })?;
         written.number += 1;
@@ -177,9 +236,10 @@ impl Board {
         self.news.subscribe()
     }
 
-    fn post(&self, message: &Message<'_>) {
+    fn post(&self, message: &Message<'_>, tell: impl FnOnce(&mut Shown)) {
         let Ok(text) = encode(message) else { return };
         let mut written = self.lock();
+        tell(&mut written.told);
         written.number += 1;
         written.last = Some((written.number, text));
         let number = written.number;

@@ -1,9 +1,11 @@
-//! The live page: learns again whenever the script, its world or its filters are saved, and shows the result in a browser.
+//! The live page: learns again whenever the script, its world or its filters are saved, and shows the result in a browser,
+//! and in the terminal if it is asked to.
 //!
 //! ```text
 //!   files.rs (saves) --> relearn.rs, session.rs (all cores) --> board.rs (the last good run, the last error)
 //!                                                                    ^ reads
 //!   browser <--> socket.rs, guard.rs, server.rs (one thread) --------+
+//!   terminal <--> terminal/ (one thread) ----------------------------+
 //! ```
 //!
 //! What learned is tested, then checked (`findings.rs`); policies that a script combines are only tested (`combined.rs`).
@@ -20,7 +22,9 @@ mod relearn;
 mod server;
 mod session;
 mod socket;
+#[cfg(feature = "tui")]
+pub mod terminal;
 
-pub use board::{Board, SavedRun, SeedRun};
-pub use relearn::{Finished, Relearner, WatchSettings};
+pub use board::{Board, SavedRun, SeedRun, Shown, ShownRun};
+pub use relearn::{Asker, Finished, Relearner, WatchSettings};
 pub use server::{Address, listen};

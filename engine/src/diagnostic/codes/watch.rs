@@ -28,8 +28,23 @@ pub(super) const PAGES: &[(&str, &str)] = &[
       steps find no room in memory. Watch fewer seeds (--seeds 3), or learn fewer steps on each save (--steps 2000).",
     ),
     (
+        "E-WATCH-SCREEN",
+        "The terminal cannot be drawn on or read from any more; the message has the system's reason.\n\
+      Leave --tui out: the page in a browser shows the same.",
+    ),
+    (
         "E-WATCH-SERVER",
         "The server of the page cannot start: the system gives it no thread, no socket or no randomness for its token.\n\
       The message has the system's reason.",
+    ),
+    (
+        "E-WATCH-TERMINAL",
+        "--tui draws on the terminal, so standard input and standard output must be one: no pipe, no file.\n\
+      Start it in a terminal, or leave --tui out and open the page in a browser.",
+    ),
+    (
+        "E-WATCH-TUI",
+        "This program was built with the live page but without its view in the terminal.\n\
+      Build it in: cargo build --release --features tui. The page in a browser shows the same.",
     ),
 ];

@@ -1,0 +1,74 @@
+/// The screen as text: sizes, states, hostile texts.
+mod drawn;
+/// The program in a real pseudo terminal.
+mod held;
+/// What each key does.
+mod keyed;
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use engine::diagnostic::SourceText;
+use engine::experiment::{Ledger, Overrides, Plan, learn_into, test_into};
+use engine::page::{Document, Moments};
+use engine::reward::Behaviour;
+use engine::watch::terminal::{Ink, View, draw};
+use engine::watch::{Board, SavedRun, SeedRun};
+use engine::world::Layout;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+use crate::support::{SCRIPT, WORLD};
+
+const INK: Ink = Ink { colour: true, fine: true };
+const ADDRESS: &str = "http://127.0.0.1:8400/?token=00112233445566778899aabbccddeeff";
+
+/// Learns and tests two seeds, and puts them on the board as a save.
+fn save(board: &Board, number: u64, script: &str, world: &str) {
+    let behaviour = Behaviour::parse("short", SourceText::new("short.rhai", script)).unwrap();
+    let (settings, layout) =
+        (behaviour.settings().clone(), Layout::parse(SourceText::new("small.toml", world)).unwrap());
+    let filters = Arc::new(engine::filter::Catalogue::linked_in());
+    let plan = Plan::with_layout(Arc::new(behaviour), settings, Arc::new(layout), filters).unwrap();
+    let plan = plan.with_changes(&Overrides::default()).unwrap();
+    let never = AtomicBool::new(false);
+    let seed = |seed| {
+        let mut learning = Ledger::new(&plan, plan.settings.run.steps);
+        let learned = learn_into(&plan, seed, &never, &|_| (), &mut learning).unwrap().whole().unwrap();
+        let mut tested = Ledger::new(&plan, plan.settings.run.test_steps);
+        let test = test_into(&plan, &learned.policy, seed, &never, &mut tested).unwrap();
+        SeedRun { learned: Arc::new(learned), learning: Arc::new(learning), test: Some(test.figures), tested }
+    };
+    let seeds = vec![seed(1), seed(2)];
+    let data: Vec<_> = seeds.iter().map(SeedRun::data).collect();
+    let document = Document::new(&plan, &data, Moments { shots: 0, scans: false, seeds: Some(0) }).unwrap();
+    let run = Arc::new(SavedRun { save: number, plan, seeds });
+    board.run(&run, true, &format!("save {number}: learned in 0.12 s, tested"), &document).unwrap();
+}
+
+/// A view of one save.
+fn view() -> View {
+    let board = Board::default();
+    save(&board, 1, SCRIPT, WORLD);
+    seen(&board)
+}
+
+fn seen(board: &Board) -> View {
+    let mut view = View::new(ADDRESS, INK);
+    view.show(board.shown(0).unwrap());
+    view
+}
+
+fn buffer(view: &View, width: u16, height: u16) -> Buffer {
+    let area = Rect::new(0, 0, width, height);
+    let mut buffer = Buffer::empty(area);
+    draw(view, area, &mut buffer);
+    buffer
+}
+
+/// The screen's lines.
+fn screen(view: &View, width: u16, height: u16) -> String {
+    let buffer = buffer(view, width, height);
+    let line = |y| (0..width).map(|x| buffer[(x, y)].symbol()).collect::<String>().trim_end().to_owned();
+    (0..height).map(line).collect::<Vec<_>>().join("\n")
+}
