@@ -165,6 +165,11 @@ fn saves_are_seen_in_a_real_terminal_which_is_given_back() {
     for words in ["Learning curve", "median of 2", "World", "too close", "http://127.0.0.1:", "? help", "q quit"] {
         assert!(text.contains(words), "{words}\n{text}");
     }
+    // Steps are played again for their facts.
+    held.type_("\t\t\t\t");
+    held.until("the step's reasons", |text| text.contains("laser.nearest = ") && text.contains(" m (beam "));
+    held.type_("\u{1b}");
+    held.until("all panels", |text| text.contains("Learning curve"));
     held.type_("t");
     held.until("the test", |text| text.contains("test, step 399 of 400"));
     bench.write("short.rhai", SCRIPT.replace("<= 0.25", "<= 0.4"));

@@ -2,7 +2,7 @@ use engine::watch::Board;
 use engine::watch::terminal::{Panel, View, Wish};
 use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
-use super::{save, screen, seen, view};
+use super::{learn, save, screen, seen, view};
 use crate::support::{SCRIPT, WORLD};
 
 fn press(view: &mut View, key: KeyCode) -> Wish {
@@ -143,6 +143,20 @@ fn a_new_save_keeps_seed_and_step() {
     stands_at(&view, "798");
     view.enlarge(Some(Panel::World));
     stands_at(&view, "798");
+}
+
+#[test]
+fn a_new_save_comes_back_to_the_test_once_there_is_one() {
+    let board = Board::default();
+    save(&board, 1, SCRIPT, WORLD);
+    let mut view = seen(&board);
+    press(&mut view, KeyCode::Char('t'));
+    learn(&board, 2, SCRIPT, WORLD, false);
+    view.show(board.shown(0).unwrap());
+    assert!(moment(&view).starts_with("learning, "));
+    save(&board, 2, SCRIPT, WORLD);
+    view.show(board.shown(0).unwrap());
+    assert!(moment(&view).starts_with("test, "));
 }
 
 #[test]

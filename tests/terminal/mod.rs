@@ -25,6 +25,10 @@ const ADDRESS: &str = "http://127.0.0.1:8400/?token=00112233445566778899aabbccdd
 
 /// Learns and tests two seeds, and puts them on the board as a save.
 fn save(board: &Board, number: u64, script: &str, world: &str) {
+    learn(board, number, script, world, true);
+}
+
+fn learn(board: &Board, number: u64, script: &str, world: &str, tests: bool) {
     let behaviour = Behaviour::parse("short", SourceText::new("short.rhai", script)).unwrap();
     let (settings, layout) =
         (behaviour.settings().clone(), Layout::parse(SourceText::new("small.toml", world)).unwrap());
@@ -35,6 +39,10 @@ fn save(board: &Board, number: u64, script: &str, world: &str) {
     let seed = |seed| {
         let mut learning = Ledger::new(&plan, plan.settings.run.steps);
         let learned = learn_into(&plan, seed, &never, &|_| (), &mut learning).unwrap().whole().unwrap();
+        if !tests {
+            let (learned, learning) = (Arc::new(learned), Arc::new(learning));
+            return SeedRun { learned, learning, test: None, tested: Ledger::off() };
+        }
         let mut tested = Ledger::new(&plan, plan.settings.run.test_steps);
         let test = test_into(&plan, &learned.policy, seed, &never, &mut tested).unwrap();
         SeedRun { learned: Arc::new(learned), learning: Arc::new(learning), test: Some(test.figures), tested }
@@ -43,7 +51,7 @@ fn save(board: &Board, number: u64, script: &str, world: &str) {
     let data: Vec<_> = seeds.iter().map(SeedRun::data).collect();
     let document = Document::new(&plan, &data, Moments { shots: 0, scans: false, seeds: Some(0) }).unwrap();
     let run = Arc::new(SavedRun { save: number, plan, seeds });
-    board.run(&run, true, &format!("save {number}: learned in 0.12 s, tested"), &document).unwrap();
+    board.run(&run, tests, &format!("save {number}: learned in 0.12 s, tested"), &document).unwrap();
 }
 
 /// A view of one save.

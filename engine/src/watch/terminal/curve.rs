@@ -67,7 +67,8 @@ pub(super) fn draw(view: &View, area: Rect, buffer: &mut Buffer) {
     dots.draw(plot, buffer, view.ink.fine);
     label_x(&axes, document.window_steps, plot, buffer);
     let legend = Rect { y: inner.y + inner.height - 1, height: 1, ..inner };
-    write(&Line::from(signs(view, curves.len(), !before.is_empty())), legend, buffer);
+    let signs = signs(view, curves.len(), !before.is_empty(), inner.width >= 48);
+    write(&Line::from(signs), legend, buffer);
 }
 
 fn lines(view: &View, axes: &Axes, curves: &[Vec<f64>], before: &[Vec<f64>], dots: &mut Dots) {
@@ -88,13 +89,13 @@ fn lines(view: &View, axes: &Axes, curves: &[Vec<f64>], before: &[Vec<f64>], dot
     dots.path(&axes.path(&quantiles(curves, 0.5)), None, Rank::Front, accent);
 }
 
-/// What each line is; the words that matter less go first where there is little room.
-fn signs(view: &View, seeds: usize, before: bool) -> Vec<Span<'static>> {
+/// What each line is.
+fn signs(view: &View, seeds: usize, before: bool, wide: bool) -> Vec<Span<'static>> {
     let accent = view.ink.accent();
     let mut signs = if seeds > 1 {
         vec![
             Span::styled("━ ", accent),
-            Span::styled(format!("median of {seeds}  "), Ink::quiet()),
+            Span::styled(if wide { format!("median of {seeds}  ") } else { "median  ".to_owned() }, Ink::quiet()),
             Span::styled("░ ", accent.patch(Ink::quiet())),
             Span::styled("10–90 %  ", Ink::quiet()),
         ]

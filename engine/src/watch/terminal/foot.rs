@@ -11,6 +11,9 @@ use super::view::{SPEEDS, View};
 use super::words::{columns, fit, short, signed, whole};
 use crate::experiment::{Phase, learned_at};
 
+/// Columns of the keys that are always named: help and quit.
+const LEAST_KEYS: usize = 16;
+
 /// Which behaviour, what is being done; how the seeds did.
 pub(super) fn head(view: &View, area: Rect, buffer: &mut Buffer) {
     let name = match view.document() {
@@ -70,8 +73,14 @@ fn figures(view: &View, wide: bool) -> Vec<Span<'static>> {
 
 /// The shown step; the page's address and as many keys as there is room for.
 pub(super) fn foot(view: &View, area: Rect, buffer: &mut Buffer) {
-    ends(moment(view), Line::styled(playing(view), Ink::quiet()), Rect { height: 1, ..area }, buffer);
-    let room = usize::from(area.width).saturating_sub(columns(&view.address) + 2);
+    if view.record().is_some() {
+        ends(moment(view), Line::styled(playing(view), Ink::quiet()), Rect { height: 1, ..area }, buffer);
+    }
+    let all = usize::from(area.width);
+    // An address without its end is of no use; the help has it whole.
+    let fits = columns(&view.address) + 2 + LEAST_KEYS <= all;
+    let address = if fits { view.address.clone() } else { String::new() };
+    let room = all.saturating_sub(columns(&address) + 2);
     let mut keys = Vec::new();
     let mut used = 0;
     for (key, name, _) in KEYS.iter().filter(|(_, name, _)| !name.is_empty()) {
@@ -86,7 +95,7 @@ pub(super) fn foot(view: &View, area: Rect, buffer: &mut Buffer) {
         );
     }
     let second = Rect { y: area.y + 1, height: 1, ..area };
-    ends(vec![Span::styled(view.address.clone(), Ink::quiet())], Line::from(keys), second, buffer);
+    ends(vec![Span::styled(address, Ink::quiet())], Line::from(keys), second, buffer);
 }
 
 fn playing(view: &View) -> String {

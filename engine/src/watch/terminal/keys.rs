@@ -29,7 +29,7 @@ pub(super) const KEYS: &[(&str, &str, &str)] = &[
     ("t", "test", "between learning and the test of the frozen policy"),
     (". ,", "rule", "to the next or the previous step at which a rule fired"),
     ("r", "learn again", "learn again, as if the script were saved"),
-    ("1-9", "speed", "speed: 1, 2, 5, 10, 25, 50, 100, 250, 1000 times as fast as the robot"),
+    ("1-9", "speed", "the speed, from 1 to 1000 times as fast as the robot"),
     ("Home End", "", "the first or the last step"),
     ("PgUp PgDn", "", "scroll a long text"),
     ("Ctrl-L", "", "draw the screen anew"),

@@ -25,9 +25,6 @@ mod view;
 mod words;
 mod world;
 
-#[cfg(test)]
-mod tests;
-
 use std::io::IsTerminal;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -87,7 +87,7 @@ fn events(record: &Record) -> String {
         (record.contact, "contact"),
         (record.fallen, "fallen"),
         (record.recover, "recovery follows"),
-        (record.explored, "explored: not the best known action"),
+        (record.explored, "explored"),
     ];
     let words: Vec<&str> = all.into_iter().filter(|(is, _)| *is).map(|(_, word)| word).collect();
     if words.is_empty() { "none".to_owned() } else { words.join(", ") }

@@ -40,6 +40,8 @@ pub struct View {
     pub(super) seeds_done: usize,
     pub(super) seed: usize,
     pub(super) phase: Phase,
+    /// The phase that the reader chose; another one is shown while that has no steps.
+    wanted: Phase,
     pub(super) step: usize,
     pub(super) speed: usize,
     pub(super) playing: bool,
@@ -67,6 +69,7 @@ impl View {
             seeds_done: 0,
             seed: 0,
             phase: Phase::Learning,
+            wanted: Phase::Learning,
             step: 0,
             speed: 3,
             playing: false,
@@ -92,7 +95,7 @@ impl View {
         if new_run {
             let seeds = self.shown.run.iter().flat_map(|shown| &shown.run.seeds);
             self.seed = seeds.map(|seed| seed.learned.seed).position(|now| Some(now) == seed).unwrap_or(0);
-            self.choose(self.phase);
+            self.choose(self.wanted);
         }
     }
 
@@ -156,6 +159,7 @@ impl View {
     /// Goes to a phase; to learning while there is no test.
     pub(super) fn choose(&mut self, phase: Phase) {
         let tested = self.seed_run().is_some_and(|seed| !seed.tested.is_empty());
+        self.wanted = phase;
         self.phase = if tested { phase } else { Phase::Learning };
         self.story = match (self.document(), self.seed_run(), self.ledger()) {
             (Some(document), Some(seed), Some(ledger)) => {
@@ -172,7 +176,7 @@ impl View {
         let seeds = self.shown.run.as_ref().map_or(0, |shown| shown.run.seeds.len());
         if seeds > 0 {
             self.seed = (self.seed as isize + by).rem_euclid(seeds as isize) as usize;
-            self.choose(self.phase);
+            self.choose(self.wanted);
         }
     }
 

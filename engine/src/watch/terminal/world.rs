@@ -63,18 +63,18 @@ pub(super) fn draw(view: &View, area: Rect, buffer: &mut Buffer) {
         nothing("no room for the world", inner, buffer);
         return;
     }
-    for solid in &document.world.solids {
-        stand(&map, solid, view.ink, &mut dots);
-    }
     if let Some(route) = &document.world.route_m {
         let places: Vec<Dot> = route.iter().map(|place| map.at((place[0], place[1]))).collect();
-        dots.path(&places, Some(1), Rank::Behind, Ink::quiet());
+        dots.path(&places, Some(1), Rank::Ground, Ink::quiet());
+    }
+    for solid in &document.world.solids {
+        stand(&map, solid, &mut dots);
     }
     let record = view.record();
     if let Some(record) = &record {
         laser(view, document, &map, record, &mut dots);
         trail(view, &map, &mut dots);
-        prey(view.ink, document, &map, record, &mut dots);
+        prey(document, &map, record, &mut dots);
     }
     dots.draw(inner, buffer, view.ink.fine);
     marks(view, document, &map, inner, buffer);
@@ -91,7 +91,7 @@ fn scale_bar(map: &Map) -> String {
     format!("├{}┤ {} m", "─".repeat(cells(metres).saturating_sub(2)), short(metres))
 }
 
-fn stand(map: &Map, solid: &Outline, ink: Ink, dots: &mut Dots) {
+fn stand(map: &Map, solid: &Outline, dots: &mut Dots) {
     let corners = map.corners(solid, (0.0, 0.0, 0.0));
     match solid.kind {
         "wall" => {
@@ -99,8 +99,8 @@ fn stand(map: &Map, solid: &Outline, ink: Ink, dots: &mut Dots) {
             dots.outline(&corners, None, Rank::Ground, Style::new());
         }
         "glass" => dots.outline(&corners, Some(1), Rank::Ground, Style::new()),
-        "paint" => dots.fill(&corners, 1, Rank::Area, ink.warning()),
-        _ => dots.outline(&corners, None, Rank::Behind, Ink::quiet()),
+        "paint" => dots.fill(&corners, 1, Rank::Ground, Style::new()),
+        _ => dots.outline(&corners, None, Rank::Ground, Ink::quiet()),
     }
 }
 
@@ -139,7 +139,10 @@ fn laser(view: &View, document: &Document, map: &Map, record: &Record, dots: &mu
         dots.fill(&fan, 2, Rank::Area, view.ink.accent().patch(Ink::quiet()));
     }
     let nearest_m = f64::from(record.nearest_m);
-    dots.line(start, end(usize::from(record.nearest_beam), nearest_m), None, Rank::Behind, view.ink.accent());
+    // Where nothing is in reach, no beam is the nearest.
+    if nearest_m < 0.99 * scan.max_range_m {
+        dots.line(start, end(usize::from(record.nearest_beam), nearest_m), None, Rank::Behind, view.ink.accent());
+    }
     if let Some(beam) = record.beam {
         let range_m = ranges_m.and_then(|ranges_m| ranges_m.get(usize::from(beam))).map(|range_m| f64::from(*range_m));
         let rule = view.ledger().and_then(|ledger| ledger.fired(view.step).map(|(rule, _)| rule).last()).unwrap_or(0);
@@ -148,13 +151,13 @@ fn laser(view: &View, document: &Document, map: &Map, record: &Record, dots: &mu
     }
 }
 
-fn prey(ink: Ink, document: &Document, map: &Map, record: &Record, dots: &mut Dots) {
+fn prey(document: &Document, map: &Map, record: &Record, dots: &mut Dots) {
     let (Some(solids), Some([x, y, yaw])) = (&document.world.prey, record.prey) else { return };
     let pose = (f64::from(x), f64::from(y), f64::from(yaw));
     for solid in solids {
         let corners = map.corners(solid, pose);
-        dots.fill(&corners, 1, Rank::Line, ink.warning());
-        dots.outline(&corners, None, Rank::Line, ink.warning());
+        dots.fill(&corners, 1, Rank::Line, Ink::strong());
+        dots.outline(&corners, None, Rank::Line, Ink::strong());
     }
 }
 
