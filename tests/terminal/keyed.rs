@@ -72,7 +72,7 @@ fn marks_are_gone_to_and_their_rule_is_lit() {
     press(&mut view, KeyCode::Home);
     press(&mut view, KeyCode::Char('.'));
     let (first, text) = (moment(&view), screen(&view, 140, 45));
-    assert!(first.contains("reward −1 · ") && first.contains("recovery follows"), "{first}");
+    assert!(first.contains("reward −1 · ") && first.contains("recovers"), "{first}");
     assert!(text.contains("fired"), "{text}");
     press(&mut view, KeyCode::Char('.'));
     assert_ne!(moment(&view), first);

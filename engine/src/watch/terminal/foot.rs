@@ -59,8 +59,8 @@ fn figures(view: &View, wide: bool) -> Vec<Span<'static>> {
     ];
     if let Some(test) = &seed.test {
         spans.push(Span::styled("; test: ", Ink::quiet()));
-        let steps = if wide { " steps" } else { "" };
-        spans.push(Span::raw(format!("{} failures per 1,000{steps}", short(test.failures_per_1000))));
+        let unit = if wide { "failures per 1,000 steps" } else { "failures/1,000" };
+        spans.push(Span::raw(format!("{} {unit}", short(test.failures_per_1000))));
         if let Some(laps) = test.laps {
             spans.push(Span::raw(format!(", {} laps", short(laps))));
         }
@@ -115,8 +115,7 @@ fn moment(view: &View) -> Vec<Span<'static>> {
         Span::styled(" · reward ", Ink::quiet()),
         Span::raw(signed(record.reward)),
     ];
-    for (event, word) in [(record.contact, "contact"), (record.fallen, "fallen"), (record.recover, "recovery follows")]
-    {
+    for (event, word) in [(record.contact, "contact"), (record.fallen, "fallen"), (record.recover, "recovers")] {
         if event {
             spans.extend([Span::styled(" · ", Ink::quiet()), Span::styled(word, view.ink.bad())]);
         }

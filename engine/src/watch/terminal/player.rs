@@ -155,6 +155,6 @@ fn moment(
             return None;
         }
     }
-    let reasons = StepReasons::of_next(&question.run.plan, ledger, playback).ok().flatten();
+    let reasons = StepReasons::of_next(playback).ok().flatten();
     Some(reasons.map(|reasons| Moment { ranges_m: playback.cycle().observation().scan.ranges_m.clone(), reasons }))
 }

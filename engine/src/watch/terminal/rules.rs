@@ -29,7 +29,7 @@ pub(super) fn draw(view: &View, area: Rect, buffer: &mut Buffer) {
     let head = format!("{:<name_width$}{:>5}{:>7}{:>8}{:>9}", "", "line", "adds", "fired", "sum");
     let inner = heading("Rules", Vec::new(), area, buffer);
     let over =
-        Rect { x: area.x + 6, width: (table_width as u16).saturating_sub(6).min(area.width - 6), height: 1, ..area };
+        Rect { x: area.x + 6, width: (table_width as u16).saturating_sub(4).min(area.width - 6), height: 1, ..area };
     write(&Line::styled(format!("{}  ", &head[4..]), Ink::quiet()), over, buffer);
     if document.rules.is_empty() {
         write(&Line::styled("this behaviour has no rules", Ink::quiet()), inner, buffer);

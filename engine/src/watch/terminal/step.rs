@@ -57,7 +57,8 @@ fn lines(view: &View, width: usize) -> Vec<Line<'static>> {
     ];
     for (rule, known) in document.rules.iter().enumerate() {
         let fired = view.fired(rule);
-        let reasons = view.moment().and_then(|moment| moment.reasons.rules.get(rule));
+        // Of a reward that was swapped later, the step's own rule of this name.
+        let reasons = view.moment().and_then(|moment| moment.reasons.rules.iter().find(|why| why.name == known.name));
         let style = if fired { Ink::strong() } else { Ink::quiet() };
         let words = reasons
             .map_or_else(|| if fired { "fired".to_owned() } else { "silent".to_owned() }, |why| said(why, fired));
@@ -96,7 +97,7 @@ fn events(record: &Record) -> String {
 fn said(why: &RuleReasons, fired: bool) -> String {
     let held = if why.needed > 1 { format!(", held {} of {} steps", why.held, why.needed) } else { String::new() };
     match why.added {
-        Some(added) if fired => format!("{}{held}", signed(added)),
+        Some(added) if fired => signed(added),
         _ if !why.asked => "not asked: an earlier rule ended the step".to_owned(),
         _ => format!("silent{held}"),
     }

@@ -1,7 +1,8 @@
 //! The steps of one phase at a glance: which rule fired when, how often, and what it added.
 
-use crate::experiment::{Ledger, Tally};
+use crate::experiment::{Ledger, Phase, Plan};
 use crate::page::Document;
+use crate::watch::SeedRun;
 
 /// One firing of a rule.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,21 +26,26 @@ pub(super) struct Story {
     pub totals: Vec<f64>,
     /// Firings in their order; `fn reward` speaks at nearly every step and leaves none.
     pub marks: Vec<Mark>,
+    /// By leg of learning: its first step, and where each of its rules stands among the plan's own.
+    legs: Vec<(usize, Vec<Option<usize>>)>,
 }
 
 impl Story {
-    /// The steps of a ledger; the tally counts those too that a ledger has no room for.
-    pub(super) fn new(document: &Document, ledger: &Ledger, tally: Option<&Tally>) -> Self {
-        let rules = document.rules.len();
+    /// A phase of a seed; the tally of learning counts those steps too that a ledger has no room for.
+    pub(super) fn new(plan: &Plan, document: &Document, seed: &SeedRun, phase: Phase) -> Self {
+        let (rules, learning) = (document.rules.len(), phase == Phase::Learning);
+        let ledger = if learning { &*seed.learning } else { &seed.tested };
         let mut story = Self {
             steps: ledger.steps(),
             kept: ledger.len(),
             fired: vec![0; rules],
             totals: vec![0.0; rules],
             marks: Vec::new(),
+            legs: legs(plan, learning),
         };
         for (step, record) in ledger.records().enumerate() {
-            for (rule, value) in ledger.fired(step).filter(|(rule, _)| *rule < rules) {
+            let fired: Vec<_> = story.fired_at(ledger, step).collect();
+            for (rule, value) in fired {
                 story.fired[rule] += 1;
                 story.totals[rule] += value;
                 if document.rules[rule].value.is_some() {
@@ -47,13 +53,23 @@ impl Story {
                 }
             }
         }
-        if let Some(tally) = tally.filter(|tally| tally.fired.len() == rules) {
-            story.fired.clone_from(&tally.fired);
+        let tally = &seed.learned.tally;
+        if learning && tally.fired.len() >= rules {
+            // Rules that only earlier legs had come after the plan's own.
+            story.fired.copy_from_slice(&tally.fired[..rules]);
             for (rule, total) in story.totals.iter_mut().enumerate() {
                 *total = (0..tally.windows.len()).map(|window| tally.by_rule(window)[rule]).sum();
             }
         }
         story
+    }
+
+    /// The rules that fired in a step, by their number among the plan's own, each with what it added.
+    pub(super) fn fired_at<'a>(&'a self, ledger: &'a Ledger, step: usize) -> impl Iterator<Item = (usize, f64)> + 'a {
+        let leg = self.legs.iter().rev().find(|(from, _)| *from <= step);
+        let own = move |rule: usize| *leg?.1.get(rule)?;
+        let own = move |(rule, value)| own(rule).filter(|rule| *rule < self.fired.len()).map(|rule| (rule, value));
+        ledger.fired(step).filter_map(own)
     }
 
     /// The nearest step after or before this one at which a rule fired.
@@ -72,6 +88,18 @@ impl Story {
         }
         counts
     }
+}
+
+/// A reward that was swapped while learning has rules of its own; those of the same name are one.
+fn legs(plan: &Plan, learning: bool) -> Vec<(usize, Vec<Option<usize>>)> {
+    let own = plan.behaviour.rules();
+    let place = |name: &str| own.iter().position(|rule| rule.name == name);
+    let places = |leg: &Plan| leg.behaviour.rules().iter().map(|rule| place(&rule.name)).collect();
+    if !learning {
+        return vec![(0, places(plan))];
+    }
+    let swaps = plan.swaps().map(|(from, _, leg, _)| (from as usize, places(leg)));
+    std::iter::once((0, places(plan.first_leg()))).chain(swaps).collect()
 }
 
 /// Which of so many equal parts a step falls into.

@@ -149,7 +149,7 @@ impl View {
 
     /// Whether a rule fired in the shown step.
     pub(super) fn fired(&self, rule: usize) -> bool {
-        self.ledger().is_some_and(|ledger| ledger.fired(self.step).any(|(fired, _)| fired == rule))
+        self.ledger().is_some_and(|ledger| self.story.fired_at(ledger, self.step).any(|(fired, _)| fired == rule))
     }
 
     fn last_step(&self) -> usize {
@@ -161,10 +161,8 @@ impl View {
         let tested = self.seed_run().is_some_and(|seed| !seed.tested.is_empty());
         self.wanted = phase;
         self.phase = if tested { phase } else { Phase::Learning };
-        self.story = match (self.document(), self.seed_run(), self.ledger()) {
-            (Some(document), Some(seed), Some(ledger)) => {
-                Story::new(document, ledger, Some(&seed.learned.tally).filter(|_| self.phase == Phase::Learning))
-            }
+        self.story = match (&self.shown.run, self.seed_run()) {
+            (Some(shown), Some(seed)) => Story::new(&shown.run.plan, &shown.document, seed, self.phase),
             _ => Story::default(),
         };
         self.step = if self.moved { self.step.min(self.last_step()) } else { self.last_step() };

@@ -145,7 +145,10 @@ fn laser(view: &View, document: &Document, map: &Map, record: &Record, dots: &mu
     }
     if let Some(beam) = record.beam {
         let range_m = ranges_m.and_then(|ranges_m| ranges_m.get(usize::from(beam))).map(|range_m| f64::from(*range_m));
-        let rule = view.ledger().and_then(|ledger| ledger.fired(view.step).map(|(rule, _)| rule).last()).unwrap_or(0);
+        let rule = view
+            .ledger()
+            .and_then(|ledger| view.story.fired_at(ledger, view.step).map(|(rule, _)| rule).last())
+            .unwrap_or(0);
         let to = end(usize::from(beam), range_m.unwrap_or(nearest_m));
         dots.line(start, to, None, Rank::Front, view.ink.rule(&document.rules, rule).patch(Ink::strong()));
     }
