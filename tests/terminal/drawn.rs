@@ -1,10 +1,13 @@
 use engine::diagnostic::SourceText;
+use engine::experiment::Leg;
+use engine::learner::Carry;
 use engine::reward::Behaviour;
 use engine::watch::Board;
 use engine::watch::terminal::{Ink, Panel, View};
-use ratatui::style::Color;
+use ratatui::crossterm::event::KeyCode;
+use ratatui::style::{Color, Modifier};
 
-use super::{ADDRESS, INK, buffer, save, screen, seen, view};
+use super::{ADDRESS, INK, buffer, plan, put, save, screen, seen, view};
 use crate::support::{SCRIPT, WORLD};
 
 fn wrong(board: &Board) {
@@ -62,10 +65,7 @@ fn before_the_first_run_it_says_what_is_done() {
     let board = Board::default();
     assert!(screen(&View::new(ADDRESS, INK), 80, 24).contains("reading the behaviour"));
     board.working("learning 30 seeds, 2000 steps each");
-    board.seed_done();
-    board.seed_done();
-    let mut view = seen(&board);
-    assert!(view.count_seeds(board.seeds_done()) && !view.count_seeds(board.seeds_done()));
+    let view = seen(&board);
     insta::assert_snapshot!(screen(&view, 60, 12));
     // Without room for the whole address, its keys stay.
     assert!(screen(&view, 80, 24).contains(ADDRESS) && screen(&view, 60, 12).ends_with("? help  q quit"));
@@ -135,6 +135,23 @@ fn hostile_and_long_names_cannot_leave_their_place() {
     view.enlarge(None);
     let text = screen(&view, 140, 45);
     assert!(text.contains(ADDRESS) && text.contains("\\u{1b}[2J"), "{text}");
+}
+
+#[test]
+fn rules_of_a_reward_that_was_swapped_keep_their_names() {
+    let first = SCRIPT.replace("rule \"too close\" when laser.nearest <= 0.25 => -1 then recover;\n", "");
+    let leg = Leg { plan: plan(&first, WORLD), steps: 400, then: Carry::Keep };
+    let board = Board::default();
+    put(&board, 1, plan(SCRIPT, WORLD).after(vec![leg]), true);
+    let mut view = seen(&board);
+    assert!(screen(&view, 140, 45).contains("┊ reward swapped"));
+    // The first rule of the first script is the second one now.
+    view.key(KeyCode::Home.into());
+    view.key(KeyCode::Char('.').into());
+    let drawn = buffer(&view, 80, 24);
+    let lit = |row: u16| drawn[(2, row)].modifier.contains(Modifier::REVERSED);
+    let rows: Vec<u16> = (0..24).filter(|row| drawn[(0, *row)].symbol() == "■").collect();
+    assert_eq!(rows.iter().map(|row| lit(*row)).collect::<Vec<_>>(), [false, true], "{}", screen(&view, 80, 24));
 }
 
 #[test]

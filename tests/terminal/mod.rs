@@ -29,15 +29,22 @@ fn save(board: &Board, number: u64, script: &str, world: &str) {
 }
 
 fn learn(board: &Board, number: u64, script: &str, world: &str, tests: bool) {
+    put(board, number, plan(script, world), tests);
+}
+
+fn plan(script: &str, world: &str) -> Plan {
     let behaviour = Behaviour::parse("short", SourceText::new("short.rhai", script)).unwrap();
     let (settings, layout) =
         (behaviour.settings().clone(), Layout::parse(SourceText::new("small.toml", world)).unwrap());
     let filters = Arc::new(engine::filter::Catalogue::linked_in());
     let plan = Plan::with_layout(Arc::new(behaviour), settings, Arc::new(layout), filters).unwrap();
-    let plan = plan.with_changes(&Overrides::default()).unwrap();
+    plan.with_changes(&Overrides::default()).unwrap()
+}
+
+fn put(board: &Board, number: u64, plan: Plan, tests: bool) {
     let never = AtomicBool::new(false);
     let seed = |seed| {
-        let mut learning = Ledger::new(&plan, plan.settings.run.steps);
+        let mut learning = Ledger::new(plan.first_leg(), plan.first_steps());
         let learned = learn_into(&plan, seed, &never, &|_| (), &mut learning).unwrap().whole().unwrap();
         if !tests {
             let (learned, learning) = (Arc::new(learned), Arc::new(learning));

@@ -51,7 +51,11 @@ pub(crate) fn run(arguments: &WatchArguments, console: &mut Console) -> Result<u
     let address = listen(Arc::clone(&board), relearner.asker(), arguments.port)?;
     #[cfg(feature = "tui")]
     if arguments.tui {
-        return in_terminal(relearner, &board, &address.url, &stop);
+        let status = in_terminal(relearner, &board, &address.url, &stop)?;
+        if let Some(out) = &out {
+            console.line(&format!("results:   {}", out.display()))?;
+        }
+        return Ok(status);
     }
     console.json(&serde_json::json!({ "address": address.url, "port": address.port }))?;
     if address.port != arguments.port && arguments.port != 0 {

@@ -1,7 +1,6 @@
 //! What the page and the terminal are told: the last good run, the error after it, what is being done. Written by the one
 //! thread that learns, read by the server and the terminal; nobody waits for a reader.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use serde::Serialize;
@@ -126,31 +125,18 @@ impl Written {
 pub struct Board {
     written: Mutex<Written>,
     news: watch::Sender<u64>,
-    seeds_done: AtomicUsize,
 }
 
 impl Default for Board {
     fn default() -> Self {
-        Self { written: Mutex::default(), news: watch::Sender::new(0), seeds_done: AtomicUsize::new(0) }
+        Self { written: Mutex::default(), news: watch::Sender::new(0) }
     }
 }
 
 impl Board {
     /// Says what is being done.
     pub fn working(&self, text: &str) {
-        self.seeds_done.store(0, Ordering::Relaxed);
         self.post(&Message::Working { text }, |told| (told.text, told.busy) = (text.into(), true));
-    }
-
-    /// Counts a seed of the running run that has learned all its steps.
-    pub fn seed_done(&self) {
-        self.seeds_done.fetch_add(1, Ordering::Relaxed);
-    }
-
-    /// How many seeds the running run has learned so far.
-    #[must_use]
-    pub fn seeds_done(&self) -> usize {
-        self.seeds_done.load(Ordering::Relaxed)
     }
 
     /// Everything, if anything is newer than number `after`.

@@ -60,8 +60,13 @@ pub(super) fn draw(view: &View, area: Rect, buffer: &mut Buffer) {
     let axes = Axes { low: low - room, high: high + room, windows: longest.max(planned).max(1), width, height };
     label_y(&axes, plot, buffer, &mut dots);
     lines(view, &axes, &curves, before, &mut dots);
+    let steps = axes.windows as f64 * document.window_steps as f64;
+    for swap in &document.swaps {
+        let x = swap.step as f64 / steps * (width - 1.0);
+        dots.line((x, 0.0), (x, height - 1.0), Some(3), Rank::Behind, view.ink.warning());
+    }
     if view.phase == Phase::Learning && view.record().is_some() {
-        let x = (view.step + 1) as f64 / (axes.windows as f64 * document.window_steps as f64) * (width - 1.0);
+        let x = (view.step + 1) as f64 / steps * (width - 1.0);
         dots.line((x, 0.0), (x, height - 1.0), Some(1), Rank::Ground, Ink::quiet());
     }
     dots.draw(plot, buffer, view.ink.fine);
@@ -105,6 +110,9 @@ fn signs(view: &View, seeds: usize, before: bool, wide: bool) -> Vec<Span<'stati
     let (sign, style) = if seeds > 1 { ("┈ ", Ink::strong()) } else { ("━ ", accent) };
     let seed = view.seed_run().map_or(0, |seed| seed.learned.seed);
     signs.extend([Span::styled(sign, style), Span::styled(format!("seed {seed}"), Ink::quiet())]);
+    if view.document().is_some_and(|document| !document.swaps.is_empty()) {
+        signs.extend([Span::styled("  ┊ ", view.ink.warning()), Span::styled("reward swapped", Ink::quiet())]);
+    }
     if before {
         signs.extend([Span::styled("  ╌ ", Ink::quiet()), Span::styled("before", Ink::quiet())]);
     }

@@ -30,12 +30,7 @@ pub(super) fn head(view: &View, area: Rect, buffer: &mut Buffer) {
 fn status(view: &View) -> Line<'static> {
     let text = fit(&view.shown.text, 70);
     if view.shown.busy {
-        let done = if view.seeds_done > 0 && text.starts_with("learning") {
-            format!(": {} done", view.seeds_done)
-        } else {
-            String::new()
-        };
-        Line::styled(format!("{text}{done}"), view.ink.accent())
+        Line::styled(text, view.ink.accent())
     } else if view.shown.error.is_some() {
         Line::styled("the last save has a mistake", view.ink.bad())
     } else {

@@ -109,7 +109,6 @@ fn follow(screen: &mut Screen, board: &Board, asker: &Asker, address: &str, stop
             view.show(shown);
             stale = true;
         }
-        stale |= view.count_seeds(board.seeds_done());
         let elapsed_s = last.elapsed().as_secs_f64().min(0.5);
         last = Instant::now();
         stale |= view.advance(elapsed_s);

@@ -37,7 +37,6 @@ pub struct View {
     pub(super) shown: Shown,
     pub(super) address: String,
     pub(super) ink: Ink,
-    pub(super) seeds_done: usize,
     pub(super) seed: usize,
     pub(super) phase: Phase,
     /// The phase that the reader chose; another one is shown while that has no steps.
@@ -66,7 +65,6 @@ impl View {
             shown: Shown::default(),
             address: address.into(),
             ink,
-            seeds_done: 0,
             seed: 0,
             phase: Phase::Learning,
             wanted: Phase::Learning,
@@ -97,11 +95,6 @@ impl View {
             self.seed = seeds.map(|seed| seed.learned.seed).position(|now| Some(now) == seed).unwrap_or(0);
             self.choose(self.wanted);
         }
-    }
-
-    /// How many seeds the running run has learned; whether that is news.
-    pub fn count_seeds(&mut self, seeds_done: usize) -> bool {
-        std::mem::replace(&mut self.seeds_done, seeds_done) != seeds_done
     }
 
     /// Keeps what was played again.
