@@ -328,3 +328,10 @@ fn a_read_only_folder() {
     }
     assert_snapshot!(told(&command.output().unwrap()));
 }
+
+#[cfg(not(feature = "tui"))]
+#[test]
+fn a_view_that_is_not_built_in_names_its_feature() {
+    let text = Bench::new().failure(&["watch", "short.rhai", "--tui"]);
+    assert!(text.starts_with("exit status 2\n") && text.contains("cargo build --release --features tui"), "{text}");
+}
