@@ -22,17 +22,18 @@ pub(super) fn head(view: &View, area: Rect, buffer: &mut Buffer) {
         }
         None => "engine watch".to_owned(),
     };
-    ends(vec![Span::styled(name, Ink::strong())], status(view), Rect { height: 1, ..area }, buffer);
+    let status = status(view, usize::from(area.width).saturating_sub(columns(&name) + 2));
+    ends(vec![Span::styled(name, Ink::strong())], status, Rect { height: 1, ..area }, buffer);
     let second = Rect { y: area.y + 1, height: 1, ..area };
     write(&Line::from(figures(view, area.width >= 100)), second, buffer);
 }
 
-fn status(view: &View) -> Line<'static> {
-    let text = fit(&view.shown.text, 70);
+fn status(view: &View, width: usize) -> Line<'static> {
+    let text = fit(&view.shown.text, width);
     if view.shown.busy {
         Line::styled(text, view.ink.accent())
     } else if view.shown.error.is_some() {
-        Line::styled("the last save has a mistake", view.ink.bad())
+        Line::styled(fit("the last save has a mistake", width), view.ink.bad())
     } else {
         Line::styled(text, Ink::quiet())
     }

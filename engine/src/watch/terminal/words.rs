@@ -135,6 +135,9 @@ mod tests {
     fn ticks_are_round_numbers() {
         assert_eq!(ticks(-42.0, 0.0, 4), [-40.0, -20.0, 0.0]);
         assert_eq!(ticks(0.0, 2000.0, 4), [0.0, 500.0, 1000.0, 1500.0, 2000.0]);
-        assert!(ticks(-0.3, 0.3, 2).iter().zip([-0.2, 0.0, 0.2]).all(|(a, b)| (a - b).abs() < 0.11));
+        let (small, wanted) = (ticks(-0.3, 0.3, 3), [-0.2, 0.0, 0.2]);
+        assert_eq!(small.len(), 3);
+        assert!(small.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-6), "{small:?}");
+        assert_eq!(ticks(0.0, 0.0, 3), [0.0]);
     }
 }
