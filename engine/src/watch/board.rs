@@ -187,6 +187,11 @@ impl Board {
     pub(super) fn checked(&self, run: &SavedRun, report: &Report) {
         let findings: Vec<Finding> = report.findings.iter().map(Finding::from).collect();
         let checked = Checked::from(report);
+        if let Some(told) = self.lock().told.run.as_mut().filter(|told| told.run.save == run.save) {
+            let document = (*told.document).clone();
+            told.document =
+                Arc::new(Document { findings: findings.clone(), checked: Some(checked.clone()), ..document });
+        }
         self.post_check(&Message::Checked { save: run.save, findings: &findings, checked: &checked });
     }
 

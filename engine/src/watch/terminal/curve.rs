@@ -46,7 +46,8 @@ pub(super) fn draw(view: &View, area: Rect, buffer: &mut Buffer) {
     let before: &[Vec<f64>] = shown.before.as_deref().unwrap_or_default();
     let values = || curves.iter().chain(before).flatten().copied();
     if inner.height < 4 || values().next().is_none() {
-        nothing("no room for the curve", inner, buffer);
+        let combined = "nothing was learned: policies are combined";
+        nothing(if inner.height < 4 { "no room for the curve" } else { combined }, inner, buffer);
         return;
     }
     let longest = curves.iter().chain(before).map(Vec::len).max().unwrap_or(1);

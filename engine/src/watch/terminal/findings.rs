@@ -9,7 +9,7 @@ use super::ink::Ink;
 use super::screen::{heading, nothing, write_all};
 use super::view::View;
 use super::words::{fit, lines};
-use crate::diagnostic::printable;
+use crate::diagnostic::{Severity, printable};
 
 /// Rows that the panel needs: of the mistake if there is one, else of the findings; none if there is nothing to say.
 pub(super) fn height(view: &View, width: u16) -> u16 {
@@ -45,7 +45,8 @@ fn found(view: &View, width: u16) -> Vec<Line<'static>> {
             let code = text.strip_prefix(&finding.code).filter(|_| row == 0);
             out.push(match code {
                 Some(rest) => {
-                    let code = Span::styled(finding.code.clone(), Ink::strong().patch(view.ink.warning()));
+                    let own = if finding.severity == Severity::Note { Style::new() } else { view.ink.warning() };
+                    let code = Span::styled(finding.code.clone(), Ink::strong().patch(own));
                     Line::from(vec![code, Span::raw(rest.to_owned())])
                 }
                 None => Line::raw(format!("  {text}")),
@@ -58,6 +59,10 @@ fn found(view: &View, width: u16) -> Vec<Line<'static>> {
                 .map(|text| Line::styled(format!("  {text}"), Ink::quiet())),
         );
     }
+    // What a cheat would earn, once the save was tried out.
+    let exploits = document.checked.as_ref().and_then(|checked| checked.exploits.as_ref());
+    let sentence = printable(exploits.map_or("", |exploits| &exploits.sentence));
+    out.extend(lines(&sentence, usize::from(width)).into_iter().map(|text| Line::styled(text, Ink::quiet())));
     out
 }
 

@@ -48,11 +48,14 @@ fn figures(view: &View, wide: bool) -> Vec<Span<'static>> {
         Some(step) => format!("at step {}", whole(step)),
         None => "not learned".to_owned(),
     };
-    let mut spans = vec![
-        Span::raw(format!("{count} of {} learned", shown.run.seeds.len())),
-        Span::styled(format!(" · seed {}: ", seed.learned.seed), Ink::quiet()),
-        Span::raw(own),
-    ];
+    let number = seed.learned.seed;
+    // Combined policies learn nothing.
+    let mut spans = if seed.learned.steps == 0 {
+        vec![Span::styled(format!("seed {number}"), Ink::quiet())]
+    } else {
+        let all = Span::raw(format!("{count} of {} learned", shown.run.seeds.len()));
+        vec![all, Span::styled(format!(" · seed {number}: "), Ink::quiet()), Span::raw(own)]
+    };
     if let Some(test) = &seed.test {
         spans.push(Span::styled("; test: ", Ink::quiet()));
         let unit = if wide { "failures per 1,000 steps" } else { "failures/1,000" };

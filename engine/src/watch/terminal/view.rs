@@ -151,9 +151,15 @@ impl View {
 
     /// Goes to a phase; to learning while there is no test.
     pub(super) fn choose(&mut self, phase: Phase) {
-        let tested = self.seed_run().is_some_and(|seed| !seed.tested.is_empty());
+        let has = |ledger: &dyn Fn(&SeedRun) -> bool| self.seed_run().is_some_and(ledger);
+        let (learned, tested) = (has(&|seed| !seed.learning.is_empty()), has(&|seed| !seed.tested.is_empty()));
         self.wanted = phase;
-        self.phase = if tested { phase } else { Phase::Learning };
+        // Combined policies are only tested.
+        self.phase = match (learned, tested) {
+            (_, false) => Phase::Learning,
+            (false, true) => Phase::Test,
+            (true, true) => phase,
+        };
         self.story = match (&self.shown.run, self.seed_run()) {
             (Some(shown), Some(seed)) => Story::new(&shown.run.plan, &shown.document, seed, self.phase),
             _ => Story::default(),

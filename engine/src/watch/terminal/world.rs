@@ -74,7 +74,7 @@ pub(super) fn draw(view: &View, area: Rect, buffer: &mut Buffer) {
     if let Some(record) = &record {
         laser(view, document, &map, record, &mut dots);
         trail(view, &map, &mut dots);
-        prey(document, &map, record, &mut dots);
+        movers(view, document, &map, &mut dots);
     }
     dots.draw(inner, buffer, view.ink.fine);
     marks(view, document, &map, inner, buffer);
@@ -154,13 +154,18 @@ fn laser(view: &View, document: &Document, map: &Map, record: &Record, dots: &mu
     }
 }
 
-fn prey(document: &Document, map: &Map, record: &Record, dots: &mut Dots) {
-    let (Some(solids), Some([x, y, yaw])) = (&document.world.prey, record.prey) else { return };
-    let pose = (f64::from(x), f64::from(y), f64::from(yaw));
-    for solid in solids {
-        let corners = map.corners(solid, pose);
-        dots.fill(&corners, 1, Rank::Line, Ink::strong());
-        dots.outline(&corners, None, Rank::Line, Ink::strong());
+/// Everything that drives by itself, where it is at the end of the step.
+fn movers(view: &View, document: &Document, map: &Map, dots: &mut Dots) {
+    let Some(shown) = &view.shown.run else { return };
+    let (settings, layout) = (&shown.run.plan.settings, &shown.run.plan.layout);
+    let time_s = (view.step + 1) as f64 * settings.run.period_s * settings.movers.speed;
+    for (mover, drawn) in layout.movers.iter().zip(&document.world.movers) {
+        let pose = mover.pose_at(&layout.routes, time_s);
+        for solid in &drawn.solids {
+            let corners = map.corners(solid, (pose.x_m, pose.y_m, pose.yaw_rad));
+            dots.fill(&corners, 1, Rank::Line, Ink::strong());
+            dots.outline(&corners, None, Rank::Line, Ink::strong());
+        }
     }
 }
 
