@@ -3,14 +3,16 @@
 use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 mod codes;
 mod excerpt;
+mod mistakes;
 mod render;
 
 pub use codes::{all_codes, code_page};
 pub use excerpt::excerpt;
+pub use mistakes::{MOST_MISTAKES, Mistakes};
 
 /// The result of anything that a user's input can make fail.
 pub type Result<T> = std::result::Result<T, Box<Diagnostic>>;
@@ -66,26 +68,29 @@ pub struct SourceText {
     pub path: PathBuf,
     /// The whole text.
     pub text: Arc<str>,
+    /// Where each line begins, once it was asked for: a text of a mebibyte may have as many places to find.
+    starts: Arc<OnceLock<Box<[usize]>>>,
 }
 
 impl SourceText {
     /// A source from a path and its text.
     #[must_use]
     pub fn new(path: impl Into<PathBuf>, text: impl Into<Arc<str>>) -> Self {
-        Self { path: path.into(), text: text.into() }
+        Self { path: path.into(), text: text.into(), starts: Arc::default() }
+    }
+
+    fn starts(&self) -> &[usize] {
+        let breaks = || self.text.match_indices('\n').map(|(at, _)| at + 1);
+        self.starts.get_or_init(|| std::iter::once(0).chain(breaks()).collect())
     }
 
     /// The byte range of one line, 1-based, without its line break; an empty range at the end if there is no such line.
     #[must_use]
     pub fn line_range(&self, line: usize) -> Range<usize> {
-        let mut start = 0;
-        for (index, text) in self.text.split_inclusive('\n').enumerate() {
-            if index + 1 == line {
-                return start..start + text.trim_end_matches(['\n', '\r']).len();
-            }
-            start += text.len();
-        }
-        self.text.len()..self.text.len()
+        let (starts, end) = (self.starts(), self.text.len());
+        let Some(&start) = line.checked_sub(1).and_then(|index| starts.get(index)) else { return end..end };
+        let text = &self.text[start..starts.get(line).copied().unwrap_or(end)];
+        start..start + text.trim_end_matches(['\n', '\r']).len()
     }
 
     /// The byte offset of a line and a column, both 1-based and counted in characters; clamped to the line's end.
@@ -103,9 +108,9 @@ impl SourceText {
         while !self.text.is_char_boundary(offset) {
             offset -= 1;
         }
-        let before = &self.text[..offset];
-        let line_start = before.rfind('\n').map_or(0, |index| index + 1);
-        (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
+        let line = self.starts().partition_point(|start| *start <= offset);
+        let start = self.starts()[line - 1];
+        (line, self.text[start..offset].chars().count() + 1)
     }
 
     /// The byte range of the word (letters, digits, underscore) at `offset`, at least one character long where possible.
@@ -142,12 +147,16 @@ pub struct Diagnostic {
     pub place: Option<Box<Place>>,
     /// What to type or change next.
     pub help: Option<String>,
+    /// The further mistakes, in the order of the lines; none of them has others itself.
+    pub others: Vec<Diagnostic>,
+    /// How many more there are that are not among them.
+    pub left_out: usize,
 }
 
 impl Diagnostic {
     /// An error without a place.
     pub fn new(kind: Kind, code: &'static str, message: impl Into<String>) -> Self {
-        Self { code, kind, message: message.into(), place: None, help: None }
+        Self { code, kind, message: message.into(), place: None, help: None, others: Vec::new(), left_out: 0 }
     }
 
     /// The same, pointing at `span` of `source` with `label` beside the caret.

@@ -1,12 +1,10 @@
 //! What BEHAVIOUR stands for: a script, a pack's file, a pack's folder, or an installed pack's name.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use engine::diagnostic::Result;
 use engine::experiment::{Overrides, Plan};
 use engine::pack::{Locked, PACK_ENDING, Pack, PackName, Runnable, draft};
-use engine::reward::Behaviour;
 use engine::store::load_members;
 
 use super::pack::places::{Places, signature_of};
@@ -40,7 +38,7 @@ pub(super) fn open_to_look(
     if let Some((pack, depends)) = open_pack(argument, allow_unsigned)? {
         return pack.plan(&depends, overrides, sources(filters)?);
     }
-    let plan = Plan::with_filters(Arc::new(Behaviour::load(argument)?), overrides, catalogue(filters)?)?;
+    let plan = Plan::load(argument, overrides, || catalogue(filters))?;
     Ok(Runnable { plan, members: Vec::new(), unpacked: None })
 }
 

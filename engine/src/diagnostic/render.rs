@@ -2,16 +2,46 @@
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 
-use super::{Diagnostic, Severity};
+use super::{Diagnostic, Severity, printable};
 
 impl Diagnostic {
-    /// The error as it is shown on a terminal: message, place with a caret, help.
+    /// The error as it is shown on a terminal: message, place with a caret, help; then the further mistakes in the same
+    /// way, and how many there are.
     #[must_use]
     pub fn render(&self, colour: bool) -> String {
-        self.render_as(Severity::Error, colour)
+        let mut blocks: Vec<_> = self.all().map(|one| one.render_as(Severity::Error, colour)).collect();
+        blocks.extend(self.summary());
+        blocks.join("\n\n")
     }
 
-    /// The same as an error, a warning or a note.
+    /// This mistake and the further ones.
+    pub fn all(&self) -> impl Iterator<Item = &Self> {
+        std::iter::once(self).chain(&self.others)
+    }
+
+    /// How many mistakes there are and in which files: `3 mistakes in 'a.rhai'`; nothing for one alone.
+    #[must_use]
+    pub fn summary(&self) -> Option<String> {
+        if self.others.is_empty() {
+            return None;
+        }
+        let mut files: Vec<String> = Vec::new();
+        for place in self.all().filter_map(|one| one.place.as_ref()) {
+            let file = format!("'{}'", printable(&place.source.path.display().to_string()));
+            if !files.contains(&file) {
+                files.push(file);
+            }
+        }
+        let shown = 1 + self.others.len();
+        let files = if files.is_empty() { String::new() } else { format!(" in {}", files.join(" and ")) };
+        let mistakes = format!("{} mistakes{files}", shown + self.left_out);
+        Some(match self.left_out {
+            0 => mistakes,
+            more => format!("{mistakes}: {shown} are shown, and {more} more"),
+        })
+    }
+
+    /// This one alone as an error, a warning or a note.
     #[must_use]
     pub fn render_as(&self, severity: Severity, colour: bool) -> String {
         let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
@@ -46,9 +76,17 @@ impl Diagnostic {
         renderer.render(&report)
     }
 
-    /// The error as one JSON object: code, message, file, line, column, help.
+    /// The error as one JSON object: code, message, file, line, column, found, help; and the further mistakes, each such
+    /// an object, as `others`, with the number of those `left_out`.
     #[must_use]
     pub fn to_json(&self) -> serde_json::Value {
+        let mut object = self.json_of_one();
+        object["others"] = self.others.iter().map(Self::json_of_one).collect();
+        object["left_out"] = self.left_out.into();
+        object
+    }
+
+    fn json_of_one(&self) -> serde_json::Value {
         let position = self.place.as_ref().map(|place| place.source.position(place.span.start));
         serde_json::json!({
             "code": self.code,

@@ -12,6 +12,7 @@ mod learning;
 mod ledger;
 mod legs;
 mod outlook;
+mod parts;
 mod plan;
 mod playback;
 mod reasons;

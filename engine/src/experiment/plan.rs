@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::{Leg, combination, outlook};
-use crate::diagnostic::{Diagnostic, Kind, Result, nearest_name, printable};
+use super::parts::Parts;
+use super::{Leg, outlook};
+use crate::diagnostic::{Diagnostic, Kind, Mistakes, Result, nearest_name, printable};
 use crate::filter::{Catalogue, Chain};
-use crate::geometry::Twist;
 use crate::learner::Mirror;
-use crate::reward::{Behaviour, Judge};
+use crate::reward::{Behaviour, Draft, Judge, Unread};
 use crate::robot::SimulatedRobot;
 use crate::settings::{SETTINGS, Settings, Value, apply};
 use crate::state::Grid;
@@ -56,10 +56,46 @@ impl Plan {
     /// # Errors
     /// As [`Plan::new`].
     pub fn with_filters(behaviour: Arc<Behaviour>, overrides: &Overrides, filters: Arc<Catalogue>) -> Result<Self> {
-        let settings = changed(behaviour.settings(), overrides)?;
-        let place = if overrides.world.is_some() { None } else { behaviour.place_of("world") };
-        let path = find_world(&behaviour, &settings.world, place)?;
-        Self::with_layout(behaviour, settings, Arc::new(Layout::load(&path)?), filters)
+        let mistakes = Mistakes::new(behaviour.source());
+        Self::resolve(behaviour, &Unread::default(), mistakes, overrides, filters)
+    }
+
+    /// Loads a script and resolves it, with all that is wrong in it, in its settings and in its world as one error.
+    ///
+    /// # Errors
+    /// As [`Behaviour::load`] and [`Plan::new`]; or if the catalogue of filters cannot be made.
+    pub fn load(
+        script: &Path,
+        overrides: &Overrides,
+        filters: impl FnOnce() -> Result<Arc<Catalogue>>,
+    ) -> Result<Self> {
+        let Draft { behaviour, mistakes, unread } = Draft::load(script)?;
+        match filters() {
+            Ok(filters) => Self::resolve(Arc::new(behaviour), &unread, mistakes, overrides, filters),
+            Err(error) => Err(mistakes.ended_by(*error)),
+        }
+    }
+
+    fn resolve(
+        behaviour: Arc<Behaviour>,
+        unread: &Unread,
+        mut mistakes: Mistakes,
+        overrides: &Overrides,
+        filters: Arc<Catalogue>,
+    ) -> Result<Self> {
+        let settings = match changed(behaviour.settings(), overrides) {
+            Ok(settings) => settings,
+            // It may be about something that the script could not say.
+            Err(error) => return mistakes.end().and(Err(error)),
+        };
+        let layout = if overrides.world.is_none() && unread.any_of("world") {
+            None
+        } else {
+            let place = if overrides.world.is_some() { None } else { behaviour.place_of("world") };
+            let path = find_world(&behaviour, &settings.world, place);
+            mistakes.take(path.and_then(|path| Layout::load(&path)))
+        };
+        Self::checked(behaviour, settings, layout.map(Arc::new), filters, unread, mistakes)
     }
 
     /// The same plan with changes; it keeps its world unless another is named.
@@ -85,16 +121,41 @@ impl Plan {
         layout: Arc<Layout>,
         filters: Arc<Catalogue>,
     ) -> Result<Self> {
-        combination::check(&behaviour, &settings)?;
+        let mistakes = Mistakes::new(behaviour.source());
+        Self::checked(behaviour, settings, Some(layout), filters, &Unread::default(), mistakes)
+    }
+
+    /// Every check whose settings are read, whatever the others find.
+    fn checked(
+        behaviour: Arc<Behaviour>,
+        settings: Settings,
+        layout: Option<Arc<Layout>>,
+        filters: Arc<Catalogue>,
+        unread: &Unread,
+        mut mistakes: Mistakes,
+    ) -> Result<Self> {
+        let parts = Parts { behaviour: &behaviour, settings: &settings, filters: &filters };
+        let sees = parts.check(unread, &mut mistakes);
+        let Some(layout) = layout else {
+            let unknown = Diagnostic::new(Kind::Input, "E-WORLD-FILE", "the script does not say which world");
+            return mistakes.end().and(Err(Box::new(unknown)));
+        };
         let plan = Self { behaviour, settings, layout, filters, earlier: Vec::new() };
-        plan.chain()?;
-        plan.grid()?;
-        plan.judge()?;
-        plan.behaviour.check_reach(&plan.settings.laser, plan.layout.level_height_m())?;
-        plan.mirror()?;
-        SimulatedRobot::new(&plan.layout, &plan.settings, 0)?;
-        outlook::check(&plan)?;
-        Ok(plan)
+        if !unread.any_of("laser") {
+            plan.behaviour.find_unreachable(&plan.settings.laser, plan.layout.level_height_m(), &mut mistakes);
+        }
+        let robot = ["camera", "laser", "movers", "recovery", "robot", "run"];
+        if !robot.iter().any(|call| unread.any_of(call))
+            && mistakes.take(SimulatedRobot::new(&plan.layout, &plan.settings, 0)).is_some()
+            && sees
+        {
+            mistakes.take(outlook::check(&plan));
+        }
+        mistakes.end().map(|()| plan)
+    }
+
+    fn parts(&self) -> Parts<'_> {
+        Parts { behaviour: &self.behaviour, settings: &self.settings, filters: &self.filters }
     }
 
     /// A fresh filter chain.
@@ -102,12 +163,7 @@ impl Plan {
     /// # Errors
     /// If the chain cannot be built; the error points at the script's line.
     pub fn chain(&self) -> Result<Chain> {
-        let (width_px, height_px) = (self.settings.camera.width_px as usize, self.settings.camera.height_px as usize);
-        Chain::new(&self.settings.filters, width_px, height_px, &self.filters).map_err(|error| {
-            let stage = format!("filter:{}", error.stage);
-            let place = error.parameter.map_or(stage.clone(), |parameter| format!("{stage}.{parameter}"));
-            self.point(*error.error, &place, "here", None)
-        })
+        self.parts().chain()
     }
 
     /// A fresh grid.
@@ -115,11 +171,7 @@ impl Plan {
     /// # Errors
     /// If it would have too many states, or cells without pixels.
     pub fn grid(&self) -> Result<Grid> {
-        let camera = &self.settings.camera;
-        Grid::new(&self.settings.grid, camera.width_px as usize, camera.height_px as usize).map_err(|error| {
-            let help = Some("use fewer rows or columns".to_owned());
-            self.point(Diagnostic::new(Kind::Input, "E-GRID", error.0), "grid.rows", "this many rows", help)
-        })
+        self.parts().grid()
     }
 
     /// The mirror that `learner.mirror` asks for.
@@ -127,19 +179,7 @@ impl Plan {
     /// # Errors
     /// If an action has no counterpart that turns the other way.
     pub fn mirror(&self) -> Result<Option<Mirror>> {
-        if !self.settings.learner.mirror {
-            return Ok(None);
-        }
-        let grid = self.grid()?;
-        let states = (0..grid.states()).map(|state| grid.mirrored(state)).collect();
-        Mirror::new(states, &self.settings.actions).map(Some).map_err(|index| {
-            let Twist { linear_m_per_s: linear, angular_rad_per_s: angular } = self.settings.actions[index];
-            let message =
-                format!("action {index} ({linear} m/s, {angular} rad/s) has no mirror image among the actions");
-            let help = format!("add the action [{linear}, {}], or leave 'mirror' out", -angular);
-            let error = Diagnostic::new(Kind::Input, "E-MIRROR", message);
-            self.point(error, "learner.mirror", "asks for mirrored learning", Some(help))
-        })
+        self.parts().mirror()
     }
 
     /// A fresh judge.
@@ -147,18 +187,7 @@ impl Plan {
     /// # Errors
     /// If a rule does not fit the settings, such as a beam that the laser does not have.
     pub fn judge(&self) -> Result<Judge> {
-        self.behaviour.judge(self.settings.run.period_s, self.settings.laser.beams as usize)
-    }
-
-    fn point(&self, error: Diagnostic, place: &str, label: &str, help: Option<String>) -> Box<Diagnostic> {
-        let error = match self.behaviour.place_of(place) {
-            Some(span) => error.at(self.behaviour.source(), span, label),
-            None => error,
-        };
-        Box::new(match help {
-            Some(help) => error.help(help),
-            None => error,
-        })
+        self.parts().judge()
     }
 }
 

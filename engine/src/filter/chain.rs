@@ -56,29 +56,57 @@ impl Chain {
     ) -> std::result::Result<Self, ChainError> {
         let default = [FilterSettings { name: "sobel".to_owned(), parameters: Vec::new() }];
         let settings = if settings.is_empty() { &default[..] } else { settings };
+        if let Some(fault) = Self::faults(settings, catalogue).into_iter().next() {
+            return Err(fault);
+        }
         let mut stages: Vec<Stage> = Vec::with_capacity(settings.len());
         let mut format = Format::Rgb;
         for (index, filter) in settings.iter().enumerate() {
             let at_stage = |error| ChainError { stage: index, parameter: None, error };
             let entry = catalogue.find(&filter.name).map_err(at_stage)?;
             let descriptor = entry.descriptor;
-            if !descriptor.reads.contains(&format) {
-                let message =
-                    format!("filter '{}' reads {}, not {}", filter.name, names(descriptor.reads), name(format));
-                let place = better_place(descriptor.reads, &stages, catalogue);
-                return Err(ChainError::new(index, message, Some(place)));
-            }
-            let values = values(index, filter, descriptor.parameters)?;
+            let (values, _) = values(index, filter, descriptor.parameters);
             let filter = create(&entry, &values, format).map_err(at_stage)?;
             format = descriptor.writes;
             stages.push(Stage { descriptor, filter, output: vec![0; width_px * height_px * format.channels()] });
         }
-        if format != Format::Mask {
+        Ok(Self { stages, width_px, height_px })
+    }
+
+    /// Everything that is wrong with a chain as it is written, before any filter is tried; in the order of the stages.
+    #[must_use]
+    pub fn faults(settings: &[FilterSettings], catalogue: &Catalogue) -> Vec<ChainError> {
+        let mut faults = Vec::new();
+        let mut before: Vec<&'static Descriptor> = Vec::with_capacity(settings.len());
+        // What comes out of the stage before; unknown behind an unknown filter.
+        let mut format = Some(Format::Rgb);
+        for (index, filter) in settings.iter().enumerate() {
+            let descriptor = match catalogue.find(&filter.name) {
+                Ok(entry) => entry.descriptor,
+                Err(error) => {
+                    faults.push(ChainError { stage: index, parameter: None, error });
+                    format = None;
+                    continue;
+                }
+            };
+            if let Some(format) = format.filter(|format| !descriptor.reads.contains(format)) {
+                let message =
+                    format!("filter '{}' reads {}, not {}", filter.name, names(descriptor.reads), name(format));
+                let place = better_place(descriptor.reads, &before, catalogue);
+                faults.push(ChainError::new(index, message, Some(place)));
+            }
+            faults.extend(values(index, filter, descriptor.parameters).1);
+            format = Some(descriptor.writes);
+            before.push(descriptor);
+        }
+        if let Some(format) =
+            format.filter(|format| *format != Format::Mask && faults.is_empty() && !settings.is_empty())
+        {
             let message = format!("the last filter writes {}, but the grid needs a mask", name(format));
             let help = Some("end the chain with a filter that writes a mask, such as sobel or colour".to_owned());
-            return Err(ChainError::new(settings.len() - 1, message, help));
+            faults.push(ChainError::new(settings.len() - 1, message, help));
         }
-        Ok(Self { stages, width_px, height_px })
+        faults
     }
 
     /// What its first filter likes best, colour or grey: the mask of an image in this format is that of its colours.
@@ -129,8 +157,8 @@ fn create(entry: &Arc<Entry>, values: &[f64], reads: Format) -> Result<Box<dyn R
 }
 
 /// Where in the chain a filter could read what is there, as an advice.
-fn better_place(reads: &[Format], before: &[Stage], catalogue: &Catalogue) -> String {
-    let written = before.iter().map(|stage| stage.descriptor.writes);
+fn better_place(reads: &[Format], before: &[&Descriptor], catalogue: &Catalogue) -> String {
+    let written = before.iter().map(|descriptor| descriptor.writes);
     if std::iter::once(Format::Rgb).chain(written).any(|format| reads.contains(&format)) {
         return "put it earlier in the chain".to_owned();
     }
@@ -142,12 +170,10 @@ fn better_place(reads: &[Format], before: &[Stage], catalogue: &Catalogue) -> St
     format!("put one before it that writes {}: {}", self::names(reads), names.join(", "))
 }
 
-fn values(
-    stage: usize,
-    filter: &FilterSettings,
-    parameters: &[Parameter],
-) -> std::result::Result<Vec<f64>, ChainError> {
+/// The value of each parameter, and what is wrong with those that are written.
+fn values(stage: usize, filter: &FilterSettings, parameters: &[Parameter]) -> (Vec<f64>, Vec<ChainError>) {
     let mut values: Vec<f64> = parameters.iter().map(|parameter| parameter.default).collect();
+    let mut faults = Vec::new();
     for (key, value) in &filter.parameters {
         let fail =
             |message, help| ChainError { parameter: Some(key.clone()), ..ChainError::new(stage, message, Some(help)) };
@@ -158,7 +184,8 @@ fn values(
                 None if parameters.is_empty() => "it has none".to_owned(),
                 None => format!("it has: {}", names.collect::<Vec<_>>().join(", ")),
             };
-            return Err(fail(format!("filter '{}' has no parameter '{}'", filter.name, printable(key)), help));
+            faults.push(fail(format!("filter '{}' has no parameter '{}'", filter.name, printable(key)), help));
+            continue;
         };
         let Parameter { kind, min, max, unit, default, .. } = parameters[index];
         let (fits, words) = match kind {
@@ -168,11 +195,12 @@ fn values(
         };
         if !fits || !(min..=max).contains(value) {
             let message = format!("'{key}' of filter '{}' must be {min} to {max}{words} ({unit})", filter.name);
-            return Err(fail(message, format!("the default is {default}")));
+            faults.push(fail(message, format!("the default is {default}")));
+            continue;
         }
         values[index] = *value;
     }
-    Ok(values)
+    (values, faults)
 }
 
 fn name(format: Format) -> &'static str {

@@ -71,7 +71,8 @@ fn functions(reader: &Reader<'_>, ast: &AST) -> Vec<Function> {
     functions
 }
 
-fn body_end(plain: &str, start: usize) -> usize {
+/// Where a function ends whose name starts at `start`.
+pub(super) fn body_end(plain: &str, start: usize) -> usize {
     let mut depth = 0_i32;
     for (index, c) in plain[start..].char_indices() {
         match c {

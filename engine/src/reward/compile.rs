@@ -138,9 +138,9 @@ impl Compiler<'_> {
                 fact_table::Fact { get: Getter::Flag(get), .. } => Typed::Flag(Flag::Fact(*get)),
             }),
             ("laser", [Link::Index(beam)]) => Some(Typed::Number(Number::Beam(self.beam(beam)?))),
-            ("camera", [Link::Call(call, position)]) if call.name == "cell" && call.args.len() == 2 => {
+            ("camera", [Link::Call(call, _)]) if call.name == "cell" && call.args.len() == 2 => {
                 let (row, column) = (self.constant_whole(&call.args[0])?, self.constant_whole(&call.args[1])?);
-                self.needs.cells.push((row, column, *position));
+                self.needs.cells.push((row, column, call.args[0].start_position()));
                 Some(Typed::Number(Number::Cell(usize::try_from(row).ok()?, usize::try_from(column).ok()?)))
             }
             ("laser", [Link::Call(call, _), rest]) => {

@@ -24,8 +24,17 @@ pub(super) fn mistake(
     message: impl Into<String>,
     label: impl Into<String>,
 ) -> Diagnostic {
-    let span = source.word_at(offset(source, position));
-    Diagnostic::new(Kind::Input, code, message).at(source, span, label)
+    mistake_at(source, code, offset(source, position), message, label)
+}
+
+fn mistake_at(
+    source: &SourceText,
+    code: &'static str,
+    at: usize,
+    message: impl Into<String>,
+    label: impl Into<String>,
+) -> Diagnostic {
+    Diagnostic::new(Kind::Input, code, message).at(source, source.word_at(at), label)
 }
 
 /// An error of the parser.
@@ -97,9 +106,14 @@ fn most_of(kind: &ParseErrorType) -> Option<String> {
 }
 
 pub(super) fn unknown_name(source: &SourceText, position: Position, name: &str, own_names: &[String]) -> Diagnostic {
+    unknown_name_at(source, offset(source, position), name, own_names)
+}
+
+/// A variable that does not exist, with the nearest that does.
+pub(super) fn unknown_name_at(source: &SourceText, at: usize, name: &str, own_names: &[String]) -> Diagnostic {
     let message = format!("there is nothing called '{}'", printable(name));
     let known = GROUPS.iter().map(|(group, _)| *group).chain(["facts", "calibrated"]);
-    let diagnostic = mistake(source, "E-SCRIPT-NAME", position, message, "not known");
+    let diagnostic = mistake_at(source, "E-SCRIPT-NAME", at, message, "not known");
     let near = nearest_name(name, own_names.iter().map(String::as_str).chain(known));
     let fact = GROUPS.iter().map(|(group, _)| *group).find(|group| names_in(group).contains(&name));
     match (near, fact) {
@@ -122,11 +136,11 @@ pub(super) fn unknown_fact(source: &SourceText, position: Position, group: &str,
 }
 
 /// A function that does not exist, with the nearest that does.
-pub(super) fn unknown_function(source: &SourceText, position: Position, name: &str, own: &[String]) -> Diagnostic {
+pub(super) fn unknown_function_at(source: &SourceText, at: usize, name: &str, own: &[String]) -> Diagnostic {
     let known = FUNCTIONS.iter().map(|row| row.name).chain(SETUP.iter().map(|row| row.name));
     let near = nearest_name(name, known.chain(own.iter().map(String::as_str)));
     let message = format!("there is no function '{}' in a script", printable(name));
-    let diagnostic = mistake(source, "E-SCRIPT-NAME", position, message, "not known");
+    let diagnostic = mistake_at(source, "E-SCRIPT-NAME", at, message, "not known");
     match (near, name) {
         (Some(near), _) => diagnostic.help(format!("did you mean '{near}'?")),
         (None, "print" | "debug") => diagnostic.help("`engine check` shows the facts and the rules that fire"),

@@ -8,6 +8,7 @@ mod behaviour;
 mod bodies;
 mod chain;
 mod compile;
+mod draft;
 mod evaluate;
 mod explain;
 mod expression;
@@ -26,10 +27,16 @@ mod running;
 mod sandbox;
 mod setup;
 mod source;
+mod spoilt;
 mod syntax;
+mod top_level;
+mod tree;
+mod unknown;
+mod unread;
 mod views;
 
 pub use behaviour::Behaviour;
+pub use draft::Draft;
 pub use fact_table::{CALLS, FACTS, Fact, FactCall, GROUPS, Getter, Reach, SECTOR, SectorFact};
 pub use facts::Facts;
 pub use functions::{FUNCTIONS, Function};
@@ -39,6 +46,7 @@ pub use readings::{Evidence, FactRead};
 pub use reference::{definitions, reference};
 pub use rule::RuleText;
 pub use setup::{SETUP, SetupCall};
+pub use unread::Unread;
 
 #[cfg(test)]
 mod tests;

@@ -7,38 +7,54 @@ use super::fact_table::{self, CALLS, GROUPS, SECTOR, names_in};
 use super::functions::FUNCTIONS;
 use super::setup::SETUP;
 use super::source::Code;
-use crate::diagnostic::{Diagnostic, Result};
+use super::spoilt::Spoilt;
+use super::tree::Tree;
+use super::unknown::Unknown;
+use crate::diagnostic::{Diagnostic, Mistakes};
 use rhai::{AST, ASTNode, Expr, FnCallExpr, Position, Stmt};
+use std::collections::BTreeSet;
 
-/// Checks the names of a script; what it finds of beams and cells goes into `needs`.
-///
-/// # Errors
-/// For the first unknown name of the text.
-pub(super) fn check(code: &Code, ast: &AST, needs: &mut Needs) -> Result<()> {
+/// Checks the names of a script: adds every mistake to `mistakes`, and what it finds of beams and cells to `needs`.
+/// Gives the names that nothing defines and that look like no other name.
+pub(super) fn check(
+    code: &Code,
+    tree: &Tree,
+    spoilt: &Spoilt,
+    needs: &mut Needs,
+    mistakes: &mut Mistakes,
+) -> BTreeSet<String> {
+    let ast = &tree.ast;
     let own: Vec<(String, usize)> = ast.iter_functions().map(|f| (f.name.to_owned(), f.params.len())).collect();
     let mut facts_names = vec!["facts".to_owned()];
     for function in ast.iter_functions().filter(|f| matches!(f.name, "reward" | "calibrate")) {
         facts_names.extend(function.params.first().map(|&name| name.to_owned()));
     }
-    let calibrates = own.iter().any(|(name, _)| name == "calibrate");
-    let mut names = Names { code, own, facts_names, calibrates, in_function: false, needs, wrong: Vec::new() };
+    let calibrates = own.iter().any(|(name, _)| name == "calibrate") || spoilt.has("calibrate");
+    let variables = tree.refused.is_some().then(|| tree.known.variables.iter().map(String::as_str).collect());
+    let unknown = Unknown::default();
+    let in_function = false;
+    let mut names =
+        Names { code, own, facts_names, variables, spoilt, calibrates, in_function, needs, unknown, mistakes };
     names.own_functions();
     names.walk(&ast.clone_statements_only());
     names.in_function = true;
     names.walk(&ast.clone_functions_only());
-    // The tree is not walked in the order of the text, and a switch not even in the same order each time.
-    let first = names.wrong.into_iter().min_by_key(|wrong| wrong.place.as_ref().map_or(0, |place| place.span.start));
-    first.map_or(Ok(()), Into::into)
+    let functions: Vec<String> = names.own.into_iter().map(|(name, _)| name).collect();
+    names.unknown.tell(code, &tree.known.variables, &functions, mistakes)
 }
 
 struct Names<'a> {
     code: &'a Code,
     own: Vec<(String, usize)>,
     facts_names: Vec<String>,
+    /// Variables at the top level; nothing if the parser knows every variable.
+    variables: Option<BTreeSet<&'a str>>,
+    spoilt: &'a Spoilt,
     calibrates: bool,
     in_function: bool,
     needs: &'a mut Needs,
-    wrong: Vec<Diagnostic>,
+    unknown: Unknown,
+    mistakes: &'a mut Mistakes,
 }
 
 impl Names<'_> {
@@ -50,8 +66,10 @@ impl Names<'_> {
         label: &str,
         help: impl Into<String>,
     ) {
-        let wrong = explain::mistake(&self.code.source, code, position, message, label);
-        self.wrong.push(wrong.help(help));
+        let source = &self.code.source;
+        if self.mistakes.wants(source, explain::offset(source, position)) {
+            self.mistakes.add(explain::mistake(source, code, position, message, label).help(help));
+        }
     }
 
     fn own_functions(&mut self) {
@@ -61,12 +79,12 @@ impl Names<'_> {
             let taken = FUNCTIONS.iter().any(|row| row.name == name) || SETUP.iter().any(|row| row.name == name);
             if taken {
                 let wrong = at("E-SCRIPT-NAME", format!("'{name}' is the name of one of the engine's functions"));
-                self.wrong.push(wrong.at(&self.code.source, span(), "defined here").help("choose another name"));
+                self.mistakes.add(wrong.at(&self.code.source, span(), "defined here").help("choose another name"));
             } else if matches!(name.as_str(), "reward" | "calibrate") && arguments != 1 {
                 let wrong =
                     at("E-SCRIPT-REWARD", format!("'fn {name}' takes one argument, the facts; found {arguments}"));
                 let help = format!("write fn {name}(facts) {{ ... }}");
-                self.wrong.push(wrong.at(&self.code.source, span(), "defined here").help(help));
+                self.mistakes.add(wrong.at(&self.code.source, span(), "defined here").help(help));
             }
         }
     }
@@ -79,9 +97,10 @@ impl Names<'_> {
     }
 
     fn node(&mut self, path: &[ASTNode<'_>]) {
-        let in_rule = path.iter().any(|node| matches!(node, ASTNode::Expr(Expr::Custom(..))));
+        let rule = path.iter().position(|node| matches!(node, ASTNode::Expr(Expr::Custom(..))));
+        let (in_rule, misplaced) = (rule.is_some(), rule.is_some_and(|depth| self.in_function || depth != 1));
         match path.last() {
-            Some(ASTNode::Expr(Expr::Custom(_, position))) if self.in_function || path.len() != 2 => {
+            Some(ASTNode::Expr(Expr::Custom(_, position))) if misplaced => {
                 let message = "a rule stands by itself, not inside a function, a loop or a condition".to_owned();
                 self.mistake(
                     "E-SCRIPT-RULE",
@@ -91,6 +110,8 @@ impl Names<'_> {
                     "move it to the top level of the script",
                 );
             }
+            // It reads other names where it belongs.
+            _ if misplaced => {}
             Some(ASTNode::Stmt(Stmt::Var(variable, ..))) if !self.in_function && path.len() == 1 => {
                 self.defined(&variable.0.name, variable.0.pos);
             }
@@ -115,6 +136,10 @@ impl Names<'_> {
         let Some(Chain { root, is_local: false, position, .. }) = Chain::of(expr) else { return };
         let is_group = GROUPS.iter().any(|(group, _)| *group == root);
         if !is_group && !matches!(root, "facts" | "calibrated") {
+            let defined = self.variables.as_ref().is_none_or(|known| known.contains(root)) || self.spoilt.has(root);
+            if !defined && !self.own.iter().any(|(name, _)| name == root) {
+                self.unknown.variable(root, explain::offset(&self.code.source, position));
+            }
             return;
         }
         if self.in_function {
@@ -161,9 +186,8 @@ impl Names<'_> {
         } else if let Some(wanted) = own.first() {
             let message = format!("'{name}' takes {wanted} arguments, found {found}");
             self.mistake("E-SCRIPT-NAME", position, message, "here", "look at its definition");
-        } else {
-            let names: Vec<String> = self.own.iter().map(|row| row.0.clone()).collect();
-            self.wrong.push(explain::unknown_function(&self.code.source, position, name, &names));
+        } else if !self.spoilt.has(name) {
+            self.unknown.function(name, explain::offset(&self.code.source, position));
         }
     }
 
@@ -264,7 +288,14 @@ impl Names<'_> {
                 let message = format!("'{key}' needs arguments");
                 self.mistake("E-SCRIPT-FACT", position, message, "here", format!("write {}", row.form));
             }
-            None => self.wrong.push(explain::unknown_fact(&self.code.source, position, group, key)),
+            None => self.unknown_fact(group, key, position),
+        }
+    }
+
+    fn unknown_fact(&mut self, group: &str, key: &str, position: Position) {
+        let source = &self.code.source;
+        if self.mistakes.wants(source, explain::offset(source, position)) {
+            self.mistakes.add(explain::unknown_fact(source, position, group, key));
         }
     }
 
@@ -275,7 +306,7 @@ impl Names<'_> {
                 let message = format!("'{group}.{name}' is a value, not a function");
                 self.mistake("E-SCRIPT-FACT", position, message, "here", format!("write {group}.{name}"));
             }
-            None => self.wrong.push(explain::unknown_fact(&self.code.source, position, group, name)),
+            None => self.unknown_fact(group, name, position),
             Some(row) if row.arguments != call.args.len() => {
                 let message = format!("'{name}' takes {} arguments, found {}", row.arguments, call.args.len());
                 self.mistake("E-SCRIPT-FACT", position, message, "here", format!("write {}", row.form));

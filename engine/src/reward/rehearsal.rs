@@ -1,15 +1,22 @@
 //! A script tried once at load, so that what must fail fails before learning starts.
 
 use super::judge::Judge;
-use crate::diagnostic::{Diagnostic, Result};
+use super::spoilt::Spoilt;
+use crate::diagnostic::{Kind, Mistakes, Result};
 use crate::settings::Settings;
 
-/// Tries every rule and function on an empty place and in a tight corner.
+/// Tries every rule and function that is not `spoilt` on an empty place and in a tight corner. Adds to `mistakes` what is
+/// wrong whatever is measured: kinds of values that do not fit, names. What depends on the values measured, such as a
+/// division by zero, is left to the run.
 ///
 /// # Errors
-/// For what is wrong whatever is measured: kinds of values that do not fit, names, limits. What depends on the values
-/// measured, such as a division by zero, is left to the run.
-pub(super) fn rehearse(mut judge: Judge, settings: &Settings) -> Result<()> {
+/// If a limit stops the script.
+pub(super) fn rehearse(
+    mut judge: Judge,
+    settings: &Settings,
+    spoilt: &mut Spoilt,
+    mistakes: &mut Mistakes,
+) -> Result<()> {
     for (range_m, sees) in [(settings.laser.max_range_m, false), (settings.laser.min_range_m, true)] {
         let (rows, columns) = (settings.grid.rows as usize, settings.grid.columns as usize);
         let facts = judge.facts_mut();
@@ -20,25 +27,39 @@ pub(super) fn rehearse(mut judge: Judge, settings: &Settings) -> Result<()> {
         (facts.seen, facts.contact, facts.fallen) = (sees, sees, sees);
         (facts.step, facts.since_recovery) = (1, 1);
         (facts.action_linear, facts.linear) = (0.2, 0.2);
-        certain(judge.calibrate())?;
-        certain(everything(&judge))?;
+        if !spoilt.has("calibrate") && !certain(judge.calibrate(), mistakes)? {
+            spoilt.insert("calibrate");
+            spoilt.insert("calibrated");
+        }
+        everything(&judge, spoilt, mistakes)?;
     }
     Ok(())
 }
 
-fn everything(judge: &Judge) -> Result<()> {
-    let present = judge.present();
+fn everything(judge: &Judge, spoilt: &Spoilt, mistakes: &mut Mistakes) -> Result<()> {
+    let (present, code) = (judge.present(), &judge.present().loaded.code);
     for rule in &present.loaded.rules {
-        certain(present.condition(rule))?;
-        certain(present.value(rule))?;
+        if !spoilt.touches(code, &rule.condition_span, mistakes) {
+            certain(present.condition(rule), mistakes)?;
+        }
+        if !spoilt.touches(code, &rule.value_span, mistakes) {
+            certain(present.value(rule), mistakes)?;
+        }
     }
-    present.loaded.reward.as_ref().map_or(Ok(()), |span| certain(present.reward(span)))
+    match &present.loaded.reward {
+        Some(span) if !spoilt.has("reward") => certain(present.reward(span), mistakes).map(drop),
+        _ => Ok(()),
+    }
 }
 
-fn certain<T>(result: Result<T>) -> Result<()> {
-    let is_chance = |wrong: &Diagnostic| wrong.code == "E-SCRIPT-RUN";
+/// Whether it went well, or failed by chance.
+fn certain<T>(result: Result<T>, mistakes: &mut Mistakes) -> Result<bool> {
     match result {
-        Err(wrong) if !is_chance(&wrong) => Err(wrong),
-        _ => Ok(()),
+        Err(wrong) if wrong.kind == Kind::Limit => Err(wrong),
+        Err(wrong) if wrong.code != "E-SCRIPT-RUN" => {
+            mistakes.add(*wrong);
+            Ok(false)
+        }
+        _ => Ok(true),
     }
 }

@@ -5,8 +5,9 @@ use super::explain;
 use super::expression::{Flag, Number};
 use super::readings::{self, Part};
 use super::source::Code;
+use super::spoilt::Spoilt;
 use super::syntax::{TimeUnit, WrittenRule};
-use crate::diagnostic::{Diagnostic, Kind, Result, printable};
+use crate::diagnostic::{Diagnostic, Kind, Mistakes, Result, printable};
 use rhai::{AST, ASTNode, Expr, Module, Position, Shared, Stmt};
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -75,60 +76,89 @@ pub(super) struct Rule {
 }
 
 impl Rule {
-    /// Checks and compiles a rule.
-    ///
-    /// # Errors
-    /// If its name is empty, its condition is no condition, its value no number, or its time no time.
+    /// Checks and compiles a rule; nothing if there is a mistake in it. Each is added to `mistakes`: an empty name, a
+    /// condition that is none, a value that is no number, a time that is no time.
     pub(super) fn new(
         code: &Code,
         written: &WrittenRule<'_>,
         library: &Shared<Module>,
         compiler: &mut Compiler<'_>,
-    ) -> Result<Self> {
+        spoilt: &Spoilt,
+        mistakes: &mut Mistakes,
+    ) -> Option<Self> {
         let source = &code.source;
+        let count = mistakes.count();
         if written.name.trim().is_empty() {
             let message = "a rule's name must not be empty";
-            return explain::mistake(source, "E-SCRIPT-RULE", written.name_position, message, "no name").into();
+            mistakes.add(explain::mistake(source, "E-SCRIPT-RULE", written.name_position, message, "no name"));
         }
         let start = explain::offset(source, written.position);
         let text = source.text[code.statement(start)].trim_end_matches(';').trim_end().to_owned();
         let (line, _) = source.position(start);
         let condition_span = span(code, written.condition);
         let value_span = span(code, written.value);
-        let wrong = |message: &str, span: &Range<usize>, label: &str| {
-            Diagnostic::new(Kind::Input, "E-SCRIPT-RULE", message).at(source, span.clone(), label)
-        };
-        let condition = match compiler.clause(written.condition) {
-            Some(Typed::Flag(flag)) => Clause::Native(flag),
-            None => Clause::Script(script(written, written.condition, library)),
-            Some(_) => {
-                return wrong("a condition must be true or false", &condition_span, "this is a number")
-                    .help("compare it: laser.nearest < 0.25")
-                    .into();
-            }
-        };
-        let value = match compiler.clause(written.value) {
-            Some(Typed::Number(number) | Typed::Whole(number)) => Clause::Native(number),
-            Some(Typed::Flag(_)) => {
-                let wrong = wrong("a rule's value must be a number", &value_span, "this is true or false");
-                return wrong.help("write a number, such as -1").into();
-            }
-            None => Clause::Script(script(written, written.value, library)),
-        };
-        if let Clause::Native(Number::Constant(value)) = &value
-            && !value.is_finite()
-        {
-            return wrong("a rule's value must be a finite number", &value_span, "too large").into();
+        let time_span = written.time.map_or(0..0, |(time, _)| span(code, time));
+        let sound = |span: &Range<usize>, mistakes: &Mistakes| !spoilt.touches(code, span, mistakes);
+        let condition = sound(&condition_span, mistakes)
+            .then(|| condition(code, written, &condition_span, library, compiler))
+            .and_then(|condition| mistakes.take(condition));
+        let value = sound(&value_span, mistakes)
+            .then(|| value(code, written, &value_span, library, compiler))
+            .and_then(|value| mistakes.take(value));
+        let persistence = sound(&time_span, mistakes)
+            .then(|| persistence(code, written, compiler))
+            .and_then(|persistence| mistakes.take(persistence));
+        let (condition, value, persistence) = (condition?, value?, persistence?);
+        if mistakes.count() > count {
+            return None;
         }
-        let persistence = persistence(code, written, compiler)?;
         let text = RuleText { name: written.name.to_owned(), line, text };
         let (recover, parts) = (written.recover, readings::parts(code, written.condition, compiler));
-        Ok(Self { text, condition, condition_span, persistence, value, value_span, recover, parts })
+        Some(Self { text, condition, condition_span, persistence, value, value_span, recover, parts })
     }
 
     /// `rule "too close"`, safe for a terminal.
     pub(super) fn shown(&self) -> String {
         format!("rule \"{}\"", printable(&self.text.name))
+    }
+}
+
+fn wrong(code: &Code, message: &str, span: &Range<usize>, label: &str) -> Diagnostic {
+    Diagnostic::new(Kind::Input, "E-SCRIPT-RULE", message).at(&code.source, span.clone(), label)
+}
+
+fn condition(
+    code: &Code,
+    written: &WrittenRule<'_>,
+    span: &Range<usize>,
+    library: &Shared<Module>,
+    compiler: &mut Compiler<'_>,
+) -> Result<Clause<Flag>> {
+    match compiler.clause(written.condition) {
+        Some(Typed::Flag(flag)) => Ok(Clause::Native(flag)),
+        None => Ok(Clause::Script(script(written, written.condition, library))),
+        Some(_) => wrong(code, "a condition must be true or false", span, "this is a number")
+            .help("compare it: laser.nearest < 0.25")
+            .into(),
+    }
+}
+
+fn value(
+    code: &Code,
+    written: &WrittenRule<'_>,
+    span: &Range<usize>,
+    library: &Shared<Module>,
+    compiler: &mut Compiler<'_>,
+) -> Result<Clause<Number>> {
+    match compiler.clause(written.value) {
+        Some(Typed::Number(Number::Constant(value)) | Typed::Whole(Number::Constant(value))) if !value.is_finite() => {
+            wrong(code, "a rule's value must be a finite number", span, "too large").into()
+        }
+        Some(Typed::Number(number) | Typed::Whole(number)) => Ok(Clause::Native(number)),
+        Some(Typed::Flag(_)) => wrong(code, "a rule's value must be a number", span, "this is true or false")
+            .help("write a number, such as -1")
+            .into(),
+        None => Ok(Clause::Script(script(written, written.value, library))),
     }
 }
 

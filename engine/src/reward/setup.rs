@@ -2,8 +2,9 @@
 
 use super::explain;
 use super::source::Code;
+use super::unread::Unread;
 use super::views::number;
-use crate::diagnostic::{Diagnostic, Kind, Result, printable};
+use crate::diagnostic::{Diagnostic, Kind, Mistakes, Result, printable};
 use crate::geometry::Twist;
 use crate::settings::{self, FilterSettings, PolicySettings, Settings, Value};
 use rhai::{AST, ASTNode, Dynamic, Engine, Expr, FnCallExpr, Map, NativeCallContext, Position, Stmt};
@@ -112,6 +113,16 @@ impl Log {
         Err(Box::new(rhai::EvalAltResult::ErrorRuntime(fault.into(), position)))
     }
 
+    /// Forgets what was called: the top level will run again.
+    pub(super) fn clear(&self) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).1.clear();
+    }
+
+    /// Whether nothing more can be called.
+    pub(super) fn is_full(&self) -> bool {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).1.len() >= MAX_CALLS
+    }
+
     fn close(&self) -> Vec<Call> {
         let mut log = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         log.0 = false;
@@ -122,17 +133,27 @@ impl Log {
 /// Settings, and where each was set.
 pub(super) type Places = BTreeMap<String, Range<usize>>;
 
-/// Ends the set-up: the settings that the calls make, over the defaults.
-///
-/// # Errors
-/// For the first call that is wrong, with its place: an unknown key, a value out of range, a setting made twice.
-pub(super) fn finish(log: &Log, code: &Code, ast: &AST) -> Result<(Settings, Places)> {
-    let mut setup = Setup { code, ast, settings: Settings::default(), places: Places::new(), call: Position::NONE };
+/// What the set-up calls say.
+#[derive(Debug)]
+pub(super) struct SetUp {
+    pub settings: Settings,
+    pub places: Places,
+    pub unread: Unread,
+}
+
+/// Ends the set-up: the settings that the calls make, over the defaults. Every call that is wrong is added to `mistakes`,
+/// with its place: an unknown key, a value out of range, a setting made twice.
+pub(super) fn finish(log: &Log, code: &Code, ast: &AST, mistakes: &mut Mistakes) -> SetUp {
+    let (settings, places, unread) = (Settings::default(), Places::new(), Unread::default());
+    let mut setup = Setup { code, ast, settings, places, unread, mistakes, call: Position::NONE };
     for call in log.close() {
         setup.call = call.position;
-        setup.apply(call.name, call.arguments)?;
+        if let Err(wrong) = setup.apply(call.name, call.arguments) {
+            setup.mistakes.add(*wrong);
+            setup.unread.all_of(call.name);
+        }
     }
-    Ok((setup.settings, setup.places))
+    SetUp { settings: setup.settings, places: setup.places, unread: setup.unread }
 }
 
 struct Setup<'a> {
@@ -140,6 +161,8 @@ struct Setup<'a> {
     ast: &'a AST,
     settings: Settings,
     places: Places,
+    unread: Unread,
+    mistakes: &'a mut Mistakes,
     call: Position,
 }
 
@@ -171,7 +194,7 @@ impl Setup<'_> {
                     _ => "way",
                 };
                 let kind = self.word(kind, form)?;
-                self.set(name, key, &Value::Text(kind), self.call)?;
+                self.set_or_tell(name, key, &Value::Text(kind), self.call);
                 map.map_or(Ok(()), |map| self.group(name, map, form))
             }
             (group, Some(map), None, None) if !matches!(group, "world" | "filter" | "actions" | "policy") => {
@@ -225,13 +248,28 @@ impl Setup<'_> {
                 (.., Ok(text)) => Value::Text(text),
                 _ => {
                     let message = format!("'{}' must be one value", printable(&key));
-                    return self.wrong(at_value, message, "found something else", form);
+                    let wrong = self.wrong(at_value, message, "found something else", form);
+                    self.tell(group, &key, wrong);
+                    continue;
                 }
             };
             let known = settings::SETTINGS.iter().any(|row| row.group == group && row.key == key.as_str());
-            self.set(group, &key, &value, if known { at_value } else { at_key })?;
+            self.set_or_tell(group, &key, &value, if known { at_value } else { at_key });
         }
         Ok(())
+    }
+
+    fn set_or_tell(&mut self, group: &'static str, key: &str, value: &Value, position: Position) {
+        let result = self.set(group, key, value, position);
+        self.tell(group, key, result);
+    }
+
+    /// Adds the mistake in one setting; the others can still be read.
+    fn tell(&mut self, group: &'static str, key: &str, result: Result<()>) {
+        if let Err(wrong) = result {
+            self.mistakes.add(*wrong);
+            self.unread.one_of(group, key);
+        }
     }
 
     fn set(&mut self, group: &'static str, key: &str, value: &Value, position: Position) -> Result<()> {
@@ -264,7 +302,8 @@ impl Setup<'_> {
                 Some(number) => filter.parameters.push((key.to_string(), number)),
                 None => {
                     let message = format!("the parameter '{}' must be a number, false or true", printable(&key));
-                    return self.wrong(position, message, "found something else", form);
+                    let wrong = self.wrong(position, message, "found something else", form);
+                    self.tell("filter", &key, wrong);
                 }
             }
             self.mark(format!("{stage}.{key}"), position)?;

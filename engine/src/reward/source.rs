@@ -1,6 +1,6 @@
 //! The text of a script: read from disk, checked for what must not be in it, and its plain code.
 
-use crate::diagnostic::{Diagnostic, Kind, Result, SourceText, nearest_name, printable};
+use crate::diagnostic::{Diagnostic, Kind, Mistakes, Result, SourceText, nearest_name, printable};
 use std::ops::Range;
 use std::path::Path;
 
@@ -125,7 +125,11 @@ pub(super) fn check(source: SourceText) -> Result<Code> {
 }
 
 fn check_characters(source: &SourceText) -> Result<()> {
+    let mut mistakes = Mistakes::new(source);
+    // One for each line: a file of another kind is full of them.
+    let mut told = false;
     for (offset, c) in source.text.char_indices() {
+        told &= c != '\n';
         let what = match c {
             '\n' | '\r' | '\t' => continue,
             '\0' => "a NUL byte",
@@ -135,12 +139,14 @@ fn check_characters(source: &SourceText) -> Result<()> {
             c if c.is_control() => "a control character",
             _ => continue,
         };
-        return Diagnostic::new(Kind::Input, "E-SCRIPT-SOURCE", format!("the script holds {what}"))
-            .at(source, offset..offset + c.len_utf8(), format!("character {}", c.escape_unicode()))
-            .help("delete it")
-            .into();
+        if !told && mistakes.wants(source, offset) {
+            told = true;
+            let wrong = Diagnostic::new(Kind::Input, "E-SCRIPT-SOURCE", format!("the script holds {what}"));
+            let label = format!("character {}", c.escape_unicode());
+            mistakes.add(wrong.at(source, offset..offset + c.len_utf8(), label).help("delete it"));
+        }
     }
-    Ok(())
+    mistakes.end()
 }
 
 /// The text with comments and the insides of quotes blanked.
@@ -225,7 +231,12 @@ fn quoted_length(text: &[u8], quote: u8, many_lines: bool) -> Option<usize> {
 impl Code {
     /// The bytes of the statement that begins at `start`, to its `;` or the end.
     pub(super) fn statement(&self, start: usize) -> Range<usize> {
-        let tail = &self.plain[start..];
+        self.statement_before(start, self.plain.len())
+    }
+
+    /// The same, to `end` at most.
+    pub(super) fn statement_before(&self, start: usize, end: usize) -> Range<usize> {
+        let tail = &self.plain[start..end];
         let mut depth = 0_i32;
         for (index, c) in tail.char_indices() {
             match c {

@@ -75,6 +75,11 @@ fn next(symbols: &[ImmutableString], ahead: &str, _: &mut Dynamic) -> Next {
     }
 }
 
+/// Whether a statement is a rule.
+pub(super) fn is_rule(statement: &Stmt) -> bool {
+    matches!(statement, Stmt::Expr(expr) if matches!(**expr, Expr::Custom(..)))
+}
+
 /// The rules that stand at the top level, in their order.
 pub(super) fn written_rules(statements: &[Stmt]) -> Vec<WrittenRule<'_>> {
     let mut variables = 0;

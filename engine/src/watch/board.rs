@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use serde::Serialize;
 use tokio::sync::watch;
 
-use crate::diagnostic::{Diagnostic, Result};
+use crate::diagnostic::{Diagnostic, Result, Severity};
 use crate::experiment::{Learned, Ledger, Plan, TestFigures};
 use crate::lint::Report;
 use crate::page::{Checked, Document, Finding, SeedData, SeedView};
@@ -56,7 +56,7 @@ pub struct SavedRun {
 #[serde(tag = "kind", rename_all = "lowercase")]
 enum Message<'a> {
     Working { text: &'a str },
-    Failed { text: String, error: serde_json::Value },
+    Failed { text: String, blocks: Vec<String>, summary: Option<String>, error: serde_json::Value },
     Run { save: u64, done: bool, text: &'a str, document: &'a Document, before: Option<&'a Before> },
     Checked { save: u64, findings: &'a [Finding], checked: &'a Checked },
     Unchecked { save: u64, text: String },
@@ -146,9 +146,14 @@ impl Board {
         (written.number > after).then(|| Shown { number: written.number, ..written.told.clone() })
     }
 
-    /// Says that a save could not be used; the last good run stays.
+    /// Says that a save could not be used, with each mistake as a block of text; the last good run stays.
     pub fn failed(&self, error: &Diagnostic) {
-        let message = Message::Failed { text: error.render(false), error: error.to_json() };
+        let message = Message::Failed {
+            text: error.render(false),
+            blocks: error.all().map(|one| one.render_as(Severity::Error, false)).collect(),
+            summary: error.summary(),
+            error: error.to_json(),
+        };
         self.post(&message, |told| (told.error, told.busy) = (Some(Arc::new(error.clone())), false));
     }
 

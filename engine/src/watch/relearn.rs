@@ -16,7 +16,6 @@ use crate::experiment::{Ledger, Overrides, Plan, TestRun, WINDOW_STEPS, in_paral
 use crate::filter::Catalogue;
 use crate::learner::Carry;
 use crate::page::{Document, Moments};
-use crate::reward::Behaviour;
 
 /// A save is often several writes; so long it must be quiet.
 const QUIET: Duration = Duration::from_millis(15);
@@ -250,8 +249,7 @@ impl Relearner {
     }
 
     fn plan(&self, files: &Mutex<Files>) -> Result<Plan> {
-        let behaviour = Arc::new(Behaviour::load(&self.settings.behaviour)?);
-        let plan = Plan::with_filters(behaviour, &self.settings.overrides, (self.settings.filters)()?)?;
+        let plan = Plan::load(&self.settings.behaviour, &self.settings.overrides, &self.settings.filters)?;
         let world = plan.layout.source.path.clone();
         files.lock().unwrap_or_else(PoisonError::into_inner).watch([world])?;
         Ok(plan)

@@ -232,8 +232,10 @@ function message(said) {
     $('status').className = '';
     $('status').textContent = app.doc ? 'the last good run stays on screen' : '';
     $('error').hidden = false;
-    $('error-text').textContent = said.text;
-    script.wrong(app.doc && said.error.file === app.doc.script_path ? said.error.line : null);
+    $('error-text').replaceChildren(...said.blocks.map((text) => el('pre', { text })));
+    $('error-count').textContent = said.summary ?? '';
+    const here = [said.error, ...said.error.others].filter((one) => app.doc && one.file === app.doc.script_path);
+    script.wrong(here.map((one) => one.line));
   } else if (said.kind === 'run') {
     $('error').hidden = true;
     $('status').className = said.done ? '' : 'busy';

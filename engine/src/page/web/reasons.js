@@ -144,8 +144,9 @@ class Script {
     setTimeout(() => line_.classList.remove('lit'), 1500);
   }
 
-  wrong(number) {
-    this.lines.forEach(({ line: line_ }, index) => line_.classList.toggle('wrong', index + 1 === number));
+  /** Marks the lines with mistakes, by their numbers from 1. */
+  wrong(numbers) {
+    this.lines.forEach(({ line: line_ }, index) => line_.classList.toggle('wrong', numbers.includes(index + 1)));
   }
 }
 

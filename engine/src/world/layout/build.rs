@@ -2,10 +2,9 @@
 
 use super::reader::{Row, read};
 use super::schema::MOST_SOLIDS;
-use super::{Layout, Obstruction};
-use crate::diagnostic::{Diagnostic, Kind, Result, SourceText, nearest_name, printable};
+use super::{Layout, starts};
+use crate::diagnostic::{Diagnostic, Kind, Mistakes, Result, SourceText, nearest_name, printable};
 use crate::geometry::{Point2, Point3, Pose, Vector3};
-use crate::world::footprint::Obstacle;
 use crate::world::mover::Mover;
 use crate::world::route::{Route, rounded};
 use crate::world::scene::{Light, Material, Scene, SceneParts, Shape, Solid, Texture};
@@ -19,16 +18,23 @@ const PAINT_M: f64 = 0.001;
 const PLAIN: &str = "plain";
 
 pub(super) fn layout(source: SourceText) -> Result<Layout> {
-    let file = read(&source)?;
-    let mut builder = Builder::new(&source);
-    builder.materials(&file)?;
-    builder.solids(&file)?;
-    let floor = builder.floor(&file)?;
-    let light = builder.light(&file)?;
-    let (routes, movers) = (builder.routes(&file)?, file.rows("mover"));
-    let movers = builder.movers(movers, &routes)?;
-    let scene = Scene::new(SceneParts { solids: builder.solids, materials: builder.materials, floor, light });
-    let terrain = Terrain::new(&scene, builder.carries);
+    let mut mistakes = Mistakes::new(&source);
+    let file = match read(&source, &mut mistakes) {
+        Ok(file) => file,
+        Err(error) => return Err(mistakes.ended_by(*error)),
+    };
+    let mut builder = Builder::new(&source, &mut mistakes);
+    builder.materials(&file);
+    builder.solids(&file);
+    let floor = builder.floor(&file);
+    let light = builder.light(&file);
+    let routes = builder.routes(&file);
+    let movers = builder.movers(&file, &routes);
+    builder.has_start(&file);
+    let Builder { materials, solids, carries, origins, .. } = builder;
+    mistakes.end()?;
+    let scene = Scene::new(SceneParts { solids, materials, floor, light });
+    let terrain = Terrain::new(&scene, carries);
     let starts = file.rows("start").iter().map(pose).collect();
     let lap = routes.iter().position(|route| route.name == "lap");
     let name = source.path.file_stem().map_or_else(|| "world".to_owned(), |stem| stem.to_string_lossy().into_owned());
@@ -42,7 +48,7 @@ pub(super) fn layout(source: SourceText) -> Result<Layout> {
         movers,
         terrain: Arc::new(terrain),
     };
-    check_starts(&layout, &file, &builder.origins)?;
+    starts::check(&layout, &file, &origins)?;
     Ok(layout)
 }
 
@@ -60,26 +66,35 @@ fn error(code: &'static str, message: impl Into<String>) -> Diagnostic {
 }
 
 /// Where a solid was written.
-type Origin = (&'static str, Range<usize>);
+pub(super) type Origin = (&'static str, Range<usize>);
 
 struct Builder<'a> {
     source: &'a SourceText,
+    mistakes: &'a mut Mistakes,
     materials: Vec<Material>,
     solids: Vec<Solid>,
     carries: Vec<bool>,
     origins: Vec<Origin>,
 }
 
+/// Whether a name may be one that a mistake in its own table, or in the name of a section, has kept from being read.
+fn is_lost(file: &Row, section: &str, name: &str) -> bool {
+    let may_be = |row: &Row| row.text("name").is_none_or(|known| known == name);
+    file.misspelt || file.rows(section).iter().any(|row| !row.sound && may_be(row)) || file.lacks(section)
+}
+
 impl<'a> Builder<'a> {
-    fn new(source: &'a SourceText) -> Self {
-        Self { source, materials: Vec::new(), solids: Vec::new(), carries: Vec::new(), origins: Vec::new() }
+    fn new(source: &'a SourceText, mistakes: &'a mut Mistakes) -> Self {
+        let (materials, solids) = (Vec::new(), Vec::new());
+        Self { source, mistakes, materials, solids, carries: Vec::new(), origins: Vec::new() }
     }
 
-    fn materials(&mut self, file: &Row) -> Result<()> {
-        for row in file.rows("material") {
+    fn materials(&mut self, file: &Row) {
+        for row in file.sound_rows("material") {
             let name = row.text("name").unwrap_or_default().to_owned();
             if self.materials.iter().any(|material| material.name == name) {
-                return self.twice("material", row).into();
+                self.mistakes.add(self.twice("material", row));
+                continue;
             }
             let colour = row.numbers("colour");
             let texture = row.rows("texture").first().map_or(Texture::Plain, texture);
@@ -94,7 +109,6 @@ impl<'a> Builder<'a> {
             let (name, colour) = (PLAIN.to_owned(), [200; 3]);
             self.materials.push(Material { name, colour, texture: Texture::Plain, laser: true });
         }
-        Ok(())
     }
 
     fn twice(&self, what: &str, row: &Row) -> Diagnostic {
@@ -104,11 +118,15 @@ impl<'a> Builder<'a> {
             .help("give each its own name")
     }
 
-    fn material(&self, row: &Row) -> Result<usize> {
+    /// The material that a table names; 0 if there is none, which is then a mistake.
+    fn material(&mut self, file: &Row, row: &Row) -> usize {
         let name = row.text("material").unwrap_or(PLAIN);
-        self.materials.iter().position(|material| material.name == name).ok_or_else(|| {
-            let names = self.materials.iter().map(|material| material.name.as_str());
-            Box::new(self.no_such("material", name, row, names))
+        self.materials.iter().position(|material| material.name == name).unwrap_or_else(|| {
+            if !is_lost(file, "material", name) && self.mistakes.wants(self.source, row.span_of("material").start) {
+                let names = self.materials.iter().map(|material| material.name.as_str());
+                self.mistakes.add(self.no_such("material", name, row, names));
+            }
+            0
         })
     }
 
@@ -128,70 +146,64 @@ impl<'a> Builder<'a> {
             .help(help)
     }
 
-    fn floor(&self, file: &Row) -> Result<usize> {
-        match file.rows("floor").first() {
-            Some(row) => self.material(row),
-            None => Ok(self.materials.iter().position(|material| material.name == PLAIN).unwrap_or(0)),
+    fn floor(&mut self, file: &Row) -> usize {
+        match file.sound_rows("floor").next() {
+            Some(row) => self.material(file, row),
+            None => self.materials.iter().position(|material| material.name == PLAIN).unwrap_or(0),
         }
     }
 
-    fn light(&self, file: &Row) -> Result<Light> {
-        let row = file.rows("light").first();
+    fn light(&mut self, file: &Row) -> Light {
+        let row = file.sound_rows("light").next();
         let mut towards = Vector3::new(0.3, 0.5, 0.8);
         if let Some(row) = row
             && let [x, y, z] = *row.numbers("towards")
         {
             towards = Vector3::new(x, y, z);
             if towards.norm() < 1e-3 {
-                return error("E-WORLD-VALUE", "'towards' must have a direction")
+                let wrong = error("E-WORLD-VALUE", "'towards' must have a direction")
                     .at(self.source, row.span_of("towards"), "its length is 0")
-                    .help("[0, 0, 1] is a light straight above")
-                    .into();
+                    .help("[0, 0, 1] is a light straight above");
+                self.mistakes.add(wrong);
             }
         }
         let number = |key, default| row.and_then(|row| row.number(key)).unwrap_or(default);
-        Ok(Light { towards: towards.normalize(), ambient: number("ambient", 0.4), gain: number("gain", 1.0) })
+        Light { towards: towards.normalize(), ambient: number("ambient", 0.4), gain: number("gain", 1.0) }
     }
 
-    fn solids(&mut self, file: &Row) -> Result<()> {
-        for row in file.rows("wall") {
-            let height = row.number("height_m").unwrap_or(1.0);
-            self.line("[[wall]]", row, row.number("thickness_m").unwrap_or(0.1), height)?;
-        }
-        for row in file.rows("box") {
-            let size = row.numbers("size_m");
-            let half_m = 0.5 * Vector3::new(size[0], size[1], size[2]);
-            self.upright("[[box]]", row, Shape::Box { half_m })?;
-        }
-        for row in file.rows("cylinder") {
-            let (radius_m, height) = (row.number("radius_m").unwrap_or(0.1), row.number("height_m").unwrap_or(1.0));
-            self.upright("[[cylinder]]", row, Shape::Cylinder { radius_m, half_height_m: 0.5 * height })?;
-        }
-        for row in file.rows("platform") {
-            if self.is_line("[[platform]]", row, &["points_m", "width_m", "height_m"], &["centre_m", "size_m"])? {
-                let (width, height) = (row.number("width_m").unwrap_or(1.0), row.number("height_m").unwrap_or(1.0));
-                self.line("[[platform]]", row, width, height)?;
-            } else {
-                let size = row.numbers("size_m");
-                let half_m = 0.5 * Vector3::new(size[0], size[1], size[2]);
-                self.upright("[[platform]]", row, Shape::Box { half_m })?;
+    fn solids(&mut self, file: &Row) {
+        for section in ["wall", "box", "cylinder", "platform", "ramp", "paint"] {
+            for row in file.sound_rows(section) {
+                let added = self.solid(file, section, row);
+                if self.mistakes.take(added).is_none() && self.solids.len() == MOST_SOLIDS {
+                    return;
+                }
             }
         }
-        for row in file.rows("ramp") {
-            let size = row.numbers("size_m");
-            let half_m = 0.5 * Vector3::new(size[0], size[1], size[2]);
-            self.upright("[[ramp]]", row, Shape::Ramp { half_m })?;
-        }
-        for row in file.rows("paint") {
-            if self.is_line("[[paint]]", row, &["points_m", "width_m"], &["centre_m", "size_m"])? {
-                self.line("[[paint]]", row, row.number("width_m").unwrap_or(0.1), PAINT_M)?;
-            } else {
-                let size = row.numbers("size_m");
-                let half_m = 0.5 * Vector3::new(size[0], size[1], PAINT_M);
-                self.upright("[[paint]]", row, Shape::Box { half_m })?;
+    }
+
+    fn solid(&mut self, file: &Row, section: &str, row: &Row) -> Result<()> {
+        let number = |key: &str, default: f64| row.number(key).unwrap_or(default);
+        let size = row.numbers("size_m");
+        let half_m = |height| 0.5 * Vector3::new(size[0], size[1], height);
+        let one = ["centre_m", "size_m"];
+        match section {
+            "wall" => self.line(file, "[[wall]]", row, number("thickness_m", 0.1), number("height_m", 1.0)),
+            "box" => self.upright(file, "[[box]]", row, Shape::Box { half_m: half_m(size[2]) }),
+            "cylinder" => {
+                let (radius_m, half_height_m) = (number("radius_m", 0.1), 0.5 * number("height_m", 1.0));
+                self.upright(file, "[[cylinder]]", row, Shape::Cylinder { radius_m, half_height_m })
             }
+            "platform" if self.is_line("[[platform]]", row, &["points_m", "width_m", "height_m"], &one)? => {
+                self.line(file, "[[platform]]", row, number("width_m", 1.0), number("height_m", 1.0))
+            }
+            "platform" => self.upright(file, "[[platform]]", row, Shape::Box { half_m: half_m(size[2]) }),
+            "ramp" => self.upright(file, "[[ramp]]", row, Shape::Ramp { half_m: half_m(size[2]) }),
+            _ if self.is_line("[[paint]]", row, &["points_m", "width_m"], &one)? => {
+                self.line(file, "[[paint]]", row, number("width_m", 0.1), PAINT_M)
+            }
+            _ => self.upright(file, "[[paint]]", row, Shape::Box { half_m: half_m(PAINT_M) }),
         }
-        Ok(())
     }
 
     /// Whether a table describes a line or one solid; it must describe exactly one of them, and all of it.
@@ -208,7 +220,7 @@ impl<'a> Builder<'a> {
     }
 
     /// A box on every segment of a line, half of its width longer at both ends so that corners are square.
-    fn line(&mut self, section: &'static str, row: &Row, width: f64, height: f64) -> Result<()> {
+    fn line(&mut self, file: &Row, section: &'static str, row: &Row, width: f64, height: f64) -> Result<()> {
         let points = row.points("points_m");
         let closed = row.flag("closed").unwrap_or(false);
         self.check_closed(points, closed)?;
@@ -218,7 +230,7 @@ impl<'a> Builder<'a> {
             let (x, y) = (to[0] - from[0], to[1] - from[1]);
             let half_m = 0.5 * Vector3::new((x * x + y * y).sqrt() + width, width, height);
             let centre = Point3::new(0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1]), bottom + half_m.z);
-            self.add(section, row, Shape::Box { half_m }, centre, libm::atan2(y, x))?;
+            self.add(file, section, row, Shape::Box { half_m }, (centre, libm::atan2(y, x)))?;
         }
         Ok(())
     }
@@ -236,69 +248,84 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    fn upright(&mut self, section: &'static str, row: &Row, shape: Shape) -> Result<()> {
+    fn upright(&mut self, file: &Row, section: &'static str, row: &Row, shape: Shape) -> Result<()> {
         let place = row.numbers("centre_m");
         let z = row.number("bottom_m").unwrap_or(0.0) + shape.half_extents().z;
-        self.add(section, row, shape, Point3::new(place[0], place[1], z), yaw(row))
+        self.add(file, section, row, shape, (Point3::new(place[0], place[1], z), yaw(row)))
     }
 
-    fn add(&mut self, section: &'static str, row: &Row, shape: Shape, centre: Point3, yaw_rad: f64) -> Result<()> {
+    fn add(
+        &mut self,
+        file: &Row,
+        section: &'static str,
+        row: &Row,
+        shape: Shape,
+        (centre, yaw_rad): (Point3, f64),
+    ) -> Result<()> {
         if self.solids.len() == MOST_SOLIDS {
             return error("E-WORLD-VALUE", format!("a world has at most {MOST_SOLIDS} solids"))
                 .at(self.source, row.span.clone(), "one too many")
                 .help("a line counts once for every segment")
                 .into();
         }
-        let material = self.material(row)?;
+        let material = self.material(file, row);
         self.solids.push(Solid { shape, centre, yaw_rad, material, collides: section != "[[paint]]" });
         self.carries.push(section == "[[platform]]" || section == "[[ramp]]");
         self.origins.push((section, row.span.clone()));
         Ok(())
     }
 
-    fn routes(&self, file: &Row) -> Result<Vec<Route>> {
+    fn routes(&mut self, file: &Row) -> Vec<Route> {
         let mut routes: Vec<Route> = Vec::new();
-        for row in file.rows("route") {
-            let name = row.text("name").unwrap_or_default();
-            if routes.iter().any(|route| route.name == name) {
-                return self.twice("route", row).into();
-            }
-            let closed = row.flag("closed").unwrap_or(false);
-            if name == "lap" && !closed {
-                return error("E-WORLD-VALUE", "the route 'lap' must be closed: laps are measured on it")
-                    .at(self.source, row.span_of("closed"), "an open route")
-                    .help("write 'closed = true', or give the route another name")
-                    .into();
-            }
-            let written = row.points("points_m");
-            self.check_closed(written, closed)?;
-            let points: Vec<Point2> = written.iter().map(|([x, y], _)| Point2::new(*x, *y)).collect();
-            let radius = row.number("corner_radius_m").unwrap_or(0.0);
-            let points = rounded(&points, closed, radius).map_err(|(corner, greatest)| {
-                error(
-                    "E-WORLD-VALUE",
-                    format!("a corner radius of {radius} m does not fit the route '{}'", printable(name)),
-                )
-                .at(self.source, written[corner].1.clone(), "at this corner")
-                .help(format!("there is room for {:.3} m", (greatest * 1000.0).floor() / 1000.0))
-            })?;
-            routes.push(Route::new(name, points, closed));
+        for row in file.sound_rows("route") {
+            let route = self.route(row, &routes);
+            routes.extend(self.mistakes.take(route));
         }
-        Ok(routes)
+        routes
     }
 
-    fn movers(&self, rows: &[Row], routes: &[Route]) -> Result<Vec<Mover>> {
+    fn route(&self, row: &Row, before: &[Route]) -> Result<Route> {
+        let name = row.text("name").unwrap_or_default();
+        if before.iter().any(|route| route.name == name) {
+            return self.twice("route", row).into();
+        }
+        let closed = row.flag("closed").unwrap_or(false);
+        if name == "lap" && !closed {
+            return error("E-WORLD-VALUE", "the route 'lap' must be closed: laps are measured on it")
+                .at(self.source, row.span_of("closed"), "an open route")
+                .help("write 'closed = true', or give the route another name")
+                .into();
+        }
+        let written = row.points("points_m");
+        self.check_closed(written, closed)?;
+        let points: Vec<Point2> = written.iter().map(|([x, y], _)| Point2::new(*x, *y)).collect();
+        let radius = row.number("corner_radius_m").unwrap_or(0.0);
+        let points = rounded(&points, closed, radius).map_err(|(corner, greatest)| {
+            error(
+                "E-WORLD-VALUE",
+                format!("a corner radius of {radius} m does not fit the route '{}'", printable(name)),
+            )
+            .at(self.source, written[corner].1.clone(), "at this corner")
+            .help(format!("there is room for {:.3} m", (greatest * 1000.0).floor() / 1000.0))
+        })?;
+        Ok(Route::new(name, points, closed))
+    }
+
+    fn movers(&mut self, file: &Row, routes: &[Route]) -> Vec<Mover> {
         let mut movers: Vec<Mover> = Vec::new();
-        for row in rows {
+        for row in file.sound_rows("mover") {
             let name = row.text("name").unwrap_or_default();
             if movers.iter().any(|mover| mover.name == name) {
-                return self.twice("mover", row).into();
+                self.mistakes.add(self.twice("mover", row));
             }
             let wanted = row.text("route").unwrap_or_default();
+            let route = routes.iter().position(|route| route.name == wanted);
             let names = routes.iter().map(|route| route.name.as_str());
-            let Some(route) = routes.iter().position(|route| route.name == wanted) else {
-                return self.no_such("route", wanted, row, names).into();
-            };
+            // A route that is there and not in this list has a mistake of its own.
+            let written = file.rows("route").iter().any(|route| route.text("name") == Some(wanted));
+            if route.is_none() && !written && !is_lost(file, "route", wanted) {
+                self.mistakes.add(self.no_such("route", wanted, row, names));
+            }
             let mut solids = Vec::new();
             for part in row.rows("boxes") {
                 let (place, size) = (part.numbers("centre_m"), part.numbers("size_m"));
@@ -306,15 +333,27 @@ impl<'a> Builder<'a> {
                     shape: Shape::Box { half_m: 0.5 * Vector3::new(size[0], size[1], size[2]) },
                     centre: Point3::new(place[0], place[1], place[2]),
                     yaw_rad: yaw(part),
-                    material: self.material(part)?,
+                    material: self.material(file, part),
                     collides: true,
                 });
             }
             let (speed_m_per_s, offset_m) =
                 (row.number("speed_m_per_s").unwrap_or(0.0), row.number("offset_m").unwrap_or(0.0));
-            movers.push(Mover { name: name.to_owned(), route, speed_m_per_s, offset_m, solids });
+            let (name, route) = (name.to_owned(), route.unwrap_or(0));
+            movers.push(Mover { name, route, speed_m_per_s, offset_m, solids });
         }
-        Ok(movers)
+        movers
+    }
+
+    fn has_start(&mut self, file: &Row) {
+        if !file.rows("start").is_empty() || file.misspelt || file.lacks("start") {
+            return;
+        }
+        let end = self.source.text.len();
+        let wrong = error("E-WORLD-START", "the world has no start")
+            .at(self.source, end..end, "the file ends here")
+            .help("add a table [[start]] with 'position_m = [x, y]' and 'yaw_deg = 0'");
+        self.mistakes.add(wrong);
     }
 }
 
@@ -326,47 +365,4 @@ fn texture(row: &Row) -> Texture {
         Some("noise") => Texture::Noise { amplitude, scale_m },
         _ => Texture::Plain,
     }
-}
-
-fn check_starts(layout: &Layout, file: &Row, origins: &[Origin]) -> Result<()> {
-    let source = &layout.source;
-    if layout.starts.is_empty() {
-        return error("E-WORLD-START", "the world has no start")
-            .at(source, source.text.len()..source.text.len(), "the file ends here")
-            .help("add a table [[start]] with 'position_m = [x, y]' and 'yaw_deg = 0'")
-            .into();
-    }
-    for (row, &start) in file.rows("start").iter().zip(&layout.starts) {
-        let at = |message: String, label: String| {
-            error("E-WORLD-START", message).at(source, row.span_of("position_m"), label)
-        };
-        let place = format!("the start at ({}, {})", start.x_m, start.y_m);
-        match layout.obstruction(start) {
-            Some(Obstruction::Solid(solid)) => {
-                let (section, span) = &origins[solid];
-                let line = source.position(span.start).0;
-                return at(format!("{place} is inside a solid"), format!("overlaps the {section} of line {line}"))
-                    .help("the robot needs 0.5 m by 0.48 m around this place, along its heading")
-                    .into();
-            }
-            Some(Obstruction::NoGround) => {
-                return at(format!("{place} has no ground under all of the robot"), "it would fall".to_owned())
-                    .help("move it at least 0.35 m away from every edge")
-                    .into();
-            }
-            None => {}
-        }
-        let stance = layout.terrain().put(&layout.scene, start).stance;
-        for mover in &layout.movers {
-            let mut solids = mover.solids.clone();
-            mover.arrange(mover.pose_at(&layout.routes, 0.0), &mut solids);
-            if solids.iter().any(|solid| Obstacle::new(solid).touches(&stance)) {
-                let name = printable(&mover.name);
-                return at(format!("{place} is inside a mover"), format!("overlaps '{name}' at time 0"))
-                    .help("move the start, or change the mover's 'offset_m'")
-                    .into();
-            }
-        }
-    }
-    Ok(())
 }

@@ -3,6 +3,7 @@
 mod build;
 mod reader;
 pub(crate) mod schema;
+mod starts;
 #[cfg(test)]
 mod tests;
 

@@ -1,7 +1,7 @@
 //! Reads a world file against its schema: syntax, names, types and ranges, each error at the user's own place.
 
 use super::schema::{FILE, Form, Key, MOST_POINTS};
-use crate::diagnostic::{Diagnostic, Kind, Result, SourceText, nearest_name, printable};
+use crate::diagnostic::{Diagnostic, Kind, Mistakes, Result, SourceText, nearest_name, printable};
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -24,7 +24,12 @@ pub(super) enum Field {
 pub(super) struct Row {
     /// Where it begins.
     pub(super) span: Range<usize>,
+    /// Whether there is no mistake in it.
+    pub(super) sound: bool,
+    /// Whether it has a key that is not known, which may be any other key misspelt.
+    pub(super) misspelt: bool,
     fields: Vec<(&'static str, Range<usize>, Field)>,
+    unusable: Vec<&'static str>,
 }
 
 impl Row {
@@ -58,55 +63,104 @@ impl Row {
         if let Some(Field::Points(points)) = self.field(key) { points } else { &[] }
     }
 
+    /// The tables of a section that have no mistake.
+    pub(super) fn sound_rows(&self, key: &str) -> impl Iterator<Item = &Self> {
+        self.rows(key).iter().filter(|row| row.sound)
+    }
+
+    /// Whether a key is written whose value cannot be used.
+    pub(super) fn lacks(&self, key: &str) -> bool {
+        self.unusable.contains(&key)
+    }
+
     /// The tables of a section; none if it is not there.
     pub(super) fn rows(&self, key: &str) -> &[Self] {
         if let Some(Field::Rows(rows)) = self.field(key) { rows } else { &[] }
     }
 }
 
-/// Reads the whole file.
-pub(super) fn read(source: &SourceText) -> Result<Row> {
-    let table = DeTable::parse(&source.text).map_err(|error| {
-        let span = error.span().unwrap_or(0..0);
-        let (message, help) = if error.message().contains("recursion limit") {
-            ("the file is nested too deeply", "a world needs three levels: a list of points, a point, a number")
-        } else if error.message().contains("duplicate key") {
-            ("a key is there twice", "keep one of the two; tables that may repeat are written [[name]]")
-        } else {
-            ("this is not TOML", "values stand after '=', text in quotes, lists in [ ]; see worlds/README.md")
-        };
-        Diagnostic::new(Kind::Input, "E-WORLD-SYNTAX", message)
-            .at(source, span, printable(&error.message().replace('\n', ", ")))
-            .help(help)
-    })?;
-    Reader { source }.row(table.get_ref(), 0..0, "", FILE)
+/// Reads the whole file, and adds what is wrong in its keys and values to `mistakes`.
+///
+/// # Errors
+/// If it is not TOML.
+pub(super) fn read(source: &SourceText, mistakes: &mut Mistakes) -> Result<Row> {
+    let table = match DeTable::parse(&source.text) {
+        Ok(table) => table,
+        Err(error) if !is_double(&error) => return syntax(source, &error).into(),
+        Err(first) => {
+            let (table, errors) = DeTable::parse_recoverable(&source.text);
+            // Behind any other mistake a key may be there twice only because a table's head is lost.
+            if !errors.iter().all(is_double) {
+                return syntax(source, errors.iter().find(|error| !is_double(error)).unwrap_or(&first)).into();
+            }
+            errors.iter().for_each(|error| mistakes.add(syntax(source, error)));
+            table
+        }
+    };
+    Ok(Reader { source, mistakes }.row(table.get_ref(), 0..0, "", FILE))
+}
+
+fn is_double(error: &toml::de::Error) -> bool {
+    error.message().contains("duplicate key")
+}
+
+fn syntax(source: &SourceText, error: &toml::de::Error) -> Diagnostic {
+    let span = error.span().unwrap_or(0..0);
+    let (message, help) = if error.message().contains("recursion limit") {
+        ("the file is nested too deeply", "a world needs three levels: a list of points, a point, a number")
+    } else if is_double(error) {
+        ("a key is there twice", "keep one of the two; tables that may repeat are written [[name]]")
+    } else {
+        ("this is not TOML", "values stand after '=', text in quotes, lists in [ ]; see worlds/README.md")
+    };
+    Diagnostic::new(Kind::Input, "E-WORLD-SYNTAX", message)
+        .at(source, span, printable(&error.message().replace('\n', ", ")))
+        .help(help)
 }
 
 struct Reader<'a> {
     source: &'a SourceText,
+    mistakes: &'a mut Mistakes,
 }
 
 impl Reader<'_> {
-    fn row(&self, table: &DeTable<'_>, span: Range<usize>, section: &str, keys: &'static [Key]) -> Result<Row> {
-        let mut fields = Vec::new();
-        // A table comes sorted by name; the first mistake is the first in the file.
+    fn row(&mut self, table: &DeTable<'_>, span: Range<usize>, section: &str, keys: &'static [Key]) -> Row {
+        let mut row = Row { span, sound: true, misspelt: false, fields: Vec::new(), unusable: Vec::new() };
         let mut entries: Vec<_> = table.iter().collect();
         entries.sort_by_key(|(name, _)| name.span().start);
         for (name, value) in entries {
             let Some(key) = keys.iter().find(|key| key.name == name.get_ref().as_ref()) else {
-                return self.unknown(name, section, keys).into();
+                if self.mistakes.wants(self.source, name.span().start) {
+                    self.mistakes.add(self.unknown(name, section, keys));
+                }
+                (row.sound, row.misspelt) = (false, true);
+                continue;
             };
-            fields.push((key.name, value.span(), self.value(key, value)?));
+            match self.value(key, value) {
+                Some(field) => {
+                    row.sound &= !matches!(&field, Field::Rows(rows) if rows.iter().any(|row| !row.sound));
+                    row.fields.push((key.name, value.span(), field));
+                }
+                None => {
+                    row.sound = false;
+                    row.unusable.push(key.name);
+                }
+            }
         }
-        if let Some(key) = keys.iter().find(|key| key.required && !table.contains_key(key.name)) {
-            let message = format!("{} has no '{}'", of(section), key.name);
-            let help = format!("add '{} = ...': {}", key.name, key.allowed());
-            return Diagnostic::new(Kind::Input, "E-WORLD-KEY", message)
-                .at(self.source, span, format!("needs '{}'", key.name))
-                .help(help)
-                .into();
+        let mut missing = keys.iter().filter(|key| key.required && !table.contains_key(key.name));
+        if let Some(key) = missing.next() {
+            row.sound = false;
+            // A key that is not known may be the one that is missing.
+            if !row.misspelt {
+                let message = format!("{} has no '{}'", of(section), key.name);
+                let more: String = missing.map(|key| format!("; it needs '{}' too", key.name)).collect();
+                let help = format!("add '{} = ...': {}{more}", key.name, key.allowed());
+                let wrong = Diagnostic::new(Kind::Input, "E-WORLD-KEY", message);
+                let label = format!("needs '{}'", key.name);
+                self.mistakes.add(wrong.at(self.source, row.span.clone(), label).help(help));
+            }
         }
-        Ok(Row { span, fields })
+        row
     }
 
     fn unknown(&self, name: &Spanned<std::borrow::Cow<'_, str>>, section: &str, keys: &'static [Key]) -> Diagnostic {
@@ -138,7 +192,48 @@ impl Reader<'_> {
         )
     }
 
-    fn value(&self, key: &'static Key, value: &Value<'_>) -> Result<Field> {
+    fn value(&mut self, key: &'static Key, value: &Value<'_>) -> Option<Field> {
+        let found = |reader: &Self| reader.wrong(key, value, format!("found {}", shown(value.get_ref())));
+        match key.form {
+            Form::Table(keys) => match value.get_ref().as_table() {
+                Some(table) => Some(Field::Rows(vec![self.row(table, value.span(), &format!("[{}]", key.name), keys)])),
+                None => {
+                    self.mistakes.add(found(self));
+                    None
+                }
+            },
+            Form::Tables(keys, most) => self.tables(key, value, keys, most),
+            _ => {
+                let field = self.plain(key, value);
+                self.mistakes.take(field)
+            }
+        }
+    }
+
+    fn tables(&mut self, key: &'static Key, value: &Value<'_>, keys: &'static [Key], most: usize) -> Option<Field> {
+        let Some(tables) = value.get_ref().as_array() else {
+            self.mistakes.add(self.wrong(key, value, format!("found {}", shown(value.get_ref()))));
+            return None;
+        };
+        if tables.len() > most {
+            let label = format!("there are {}, at most {most} are allowed", tables.len());
+            self.mistakes.add(self.wrong(key, value, label));
+            return None;
+        }
+        let section = format!("[[{}]]", key.name);
+        let (mut rows, mut whole) = (Vec::with_capacity(tables.len()), true);
+        for row in tables.iter() {
+            if let Some(table) = row.get_ref().as_table() {
+                rows.push(self.row(table, row.span(), &section, keys));
+            } else {
+                self.mistakes.add(self.wrong(key, row, format!("found {}", shown(row.get_ref()))));
+                whole = false;
+            }
+        }
+        whole.then_some(Field::Rows(rows))
+    }
+
+    fn plain(&self, key: &'static Key, value: &Value<'_>) -> Result<Field> {
         let found = || self.wrong(key, value, format!("found {}", shown(value.get_ref())));
         Ok(match key.form {
             Form::Text => Field::Text(value.get_ref().as_str().ok_or_else(found)?.to_owned()),
@@ -160,23 +255,7 @@ impl Reader<'_> {
                 Field::Numbers(self.array(key, value, count..=count, |n| (low..=high).contains(&n))?)
             }
             Form::Points(least) => Field::Points(self.points(key, value, least)?),
-            Form::Table(keys) => {
-                let table = value.get_ref().as_table().ok_or_else(found)?;
-                Field::Rows(vec![self.row(table, value.span(), &format!("[{}]", key.name), keys)?])
-            }
-            Form::Tables(keys, most) => {
-                let tables = value.get_ref().as_array().ok_or_else(found)?;
-                if tables.len() > most {
-                    let label = format!("there are {}, at most {most} are allowed", tables.len());
-                    return self.wrong(key, value, label).into();
-                }
-                let section = format!("[[{}]]", key.name);
-                let rows = tables.iter().map(|row| {
-                    let wrong = || self.wrong(key, row, format!("found {}", shown(row.get_ref())));
-                    self.row(row.get_ref().as_table().ok_or_else(wrong)?, row.span(), &section, keys)
-                });
-                Field::Rows(rows.collect::<Result<_>>()?)
-            }
+            Form::Table(_) | Form::Tables(..) => return found().into(),
         })
     }
 

@@ -1,0 +1,102 @@
+//! What a script's settings are made into, each part checked by itself: chain, grid, judge, mirror.
+
+use super::combination;
+use crate::diagnostic::{Diagnostic, Kind, Mistakes, Result};
+use crate::filter::{Catalogue, Chain, ChainError};
+use crate::geometry::Twist;
+use crate::learner::Mirror;
+use crate::reward::{Behaviour, Judge, Unread};
+use crate::settings::Settings;
+use crate::state::Grid;
+
+/// A behaviour with its settings and the filters that it may use.
+pub(super) struct Parts<'a> {
+    pub behaviour: &'a Behaviour,
+    pub settings: &'a Settings,
+    pub filters: &'a Catalogue,
+}
+
+impl Parts<'_> {
+    /// Tries every part whose settings are read. Gives whether the robot will see: there are a chain and a grid.
+    pub(super) fn check(&self, unread: &Unread, mistakes: &mut Mistakes) -> bool {
+        if !unread.any_of("policy") && !unread.any_of("combine") {
+            mistakes.take(combination::check(self.behaviour, self.settings));
+        }
+        let camera = !unread.has("camera", "width_px") && !unread.has("camera", "height_px");
+        let chain = camera && !unread.any_of("filter") && mistakes.take(self.tried_chain()).is_some();
+        let grid = camera && !unread.any_of("grid") && mistakes.take(self.grid()).is_some();
+        if !unread.has("laser", "beams") {
+            mistakes.take(self.judge());
+        }
+        if grid && !unread.any_of("actions") && !unread.any_of("learner") {
+            mistakes.take(self.mirror());
+        }
+        chain && grid && !unread.any_of("camera")
+    }
+
+    /// A fresh filter chain.
+    pub(super) fn chain(&self) -> Result<Chain> {
+        let camera = &self.settings.camera;
+        let (width_px, height_px) = (camera.width_px as usize, camera.height_px as usize);
+        Chain::new(&self.settings.filters, width_px, height_px, self.filters).map_err(|error| self.in_chain(error))
+    }
+
+    /// The same, with all that is wrong in it.
+    fn tried_chain(&self) -> Result<Chain> {
+        self.chain().map_err(|first| {
+            let mut mistakes = Mistakes::new(self.behaviour.source());
+            let faults = Chain::faults(&self.settings.filters, self.filters);
+            faults.into_iter().for_each(|fault| mistakes.add(*self.in_chain(fault)));
+            // What is written may be well, and a filter refuse it.
+            if mistakes.is_empty() { first } else { mistakes.end().err().unwrap_or(first) }
+        })
+    }
+
+    fn in_chain(&self, error: ChainError) -> Box<Diagnostic> {
+        let stage = format!("filter:{}", error.stage);
+        let place = error.parameter.map_or(stage.clone(), |parameter| format!("{stage}.{parameter}"));
+        self.point(*error.error, &place, "here", None)
+    }
+
+    /// A fresh grid.
+    pub(super) fn grid(&self) -> Result<Grid> {
+        let camera = &self.settings.camera;
+        Grid::new(&self.settings.grid, camera.width_px as usize, camera.height_px as usize).map_err(|error| {
+            let help = Some("use fewer rows or columns".to_owned());
+            self.point(Diagnostic::new(Kind::Input, "E-GRID", error.0), "grid.rows", "this many rows", help)
+        })
+    }
+
+    /// The mirror that `learner.mirror` asks for.
+    pub(super) fn mirror(&self) -> Result<Option<Mirror>> {
+        if !self.settings.learner.mirror {
+            return Ok(None);
+        }
+        let grid = self.grid()?;
+        let states = (0..grid.states()).map(|state| grid.mirrored(state)).collect();
+        Mirror::new(states, &self.settings.actions).map(Some).map_err(|index| {
+            let Twist { linear_m_per_s: linear, angular_rad_per_s: angular } = self.settings.actions[index];
+            let message =
+                format!("action {index} ({linear} m/s, {angular} rad/s) has no mirror image among the actions");
+            let help = format!("add the action [{linear}, {}], or leave 'mirror' out", -angular);
+            let error = Diagnostic::new(Kind::Input, "E-MIRROR", message);
+            self.point(error, "learner.mirror", "asks for mirrored learning", Some(help))
+        })
+    }
+
+    /// A fresh judge.
+    pub(super) fn judge(&self) -> Result<Judge> {
+        self.behaviour.judge(self.settings.run.period_s, self.settings.laser.beams as usize)
+    }
+
+    fn point(&self, error: Diagnostic, place: &str, label: &str, help: Option<String>) -> Box<Diagnostic> {
+        let error = match self.behaviour.place_of(place) {
+            Some(span) => error.at(self.behaviour.source(), span, label),
+            None => error,
+        };
+        Box::new(match help {
+            Some(help) => error.help(help),
+            None => error,
+        })
+    }
+}
