@@ -30,6 +30,8 @@ mod forms;
 mod ledger;
 /// Seeded mistakes and what is found in them; scripts that ship; ways to cheat.
 mod lint;
+/// All mistakes of a script and of its world at once, in order, each once.
+mod mistakes;
 /// WebAssembly filters that loop, grow, trap, lie or are damaged.
 #[cfg(feature = "wasm")]
 mod modules;

@@ -7,11 +7,13 @@ use std::sync::{Arc, OnceLock};
 
 mod codes;
 mod excerpt;
+mod lines;
 mod mistakes;
 mod render;
 
 pub use codes::{all_codes, code_page};
 pub use excerpt::excerpt;
+use lines::Lines;
 pub use mistakes::{MOST_MISTAKES, Mistakes};
 
 /// The result of anything that a user's input can make fail.
@@ -68,28 +70,26 @@ pub struct SourceText {
     pub path: PathBuf,
     /// The whole text.
     pub text: Arc<str>,
-    /// Where each line begins, once it was asked for: a text of a mebibyte may have as many places to find.
-    starts: Arc<OnceLock<Box<[usize]>>>,
+    lines: Arc<OnceLock<Lines>>,
 }
 
 impl SourceText {
     /// A source from a path and its text.
     #[must_use]
     pub fn new(path: impl Into<PathBuf>, text: impl Into<Arc<str>>) -> Self {
-        Self { path: path.into(), text: text.into(), starts: Arc::default() }
+        Self { path: path.into(), text: text.into(), lines: Arc::default() }
     }
 
-    fn starts(&self) -> &[usize] {
-        let breaks = || self.text.match_indices('\n').map(|(at, _)| at + 1);
-        self.starts.get_or_init(|| std::iter::once(0).chain(breaks()).collect())
+    fn lines(&self) -> &Lines {
+        self.lines.get_or_init(|| Lines::new(&self.text))
     }
 
     /// The byte range of one line, 1-based, without its line break; an empty range at the end if there is no such line.
     #[must_use]
     pub fn line_range(&self, line: usize) -> Range<usize> {
-        let (starts, end) = (self.starts(), self.text.len());
-        let Some(&start) = line.checked_sub(1).and_then(|index| starts.get(index)) else { return end..end };
-        let text = &self.text[start..starts.get(line).copied().unwrap_or(end)];
+        let (lines, end) = (self.lines(), self.text.len());
+        let Some(start) = lines.start(line) else { return end..end };
+        let text = &self.text[start..lines.start(line + 1).unwrap_or(end)];
         start..start + text.trim_end_matches(['\n', '\r']).len()
     }
 
@@ -97,8 +97,7 @@ impl SourceText {
     #[must_use]
     pub fn offset(&self, line: usize, column: usize) -> usize {
         let range = self.line_range(line);
-        let text = &self.text[range.clone()];
-        range.start + text.char_indices().nth(column.saturating_sub(1)).map_or(text.len(), |(index, _)| index)
+        self.lines().offset(&self.text, line, column).map_or(range.end, |at| at.min(range.end))
     }
 
     /// The line and column, both 1-based, of a byte offset.
@@ -108,9 +107,7 @@ impl SourceText {
         while !self.text.is_char_boundary(offset) {
             offset -= 1;
         }
-        let line = self.starts().partition_point(|start| *start <= offset);
-        let start = self.starts()[line - 1];
-        (line, self.text[start..offset].chars().count() + 1)
+        self.lines().position(&self.text, offset)
     }
 
     /// The byte range of the word (letters, digits, underscore) at `offset`, at least one character long where possible.

@@ -133,8 +133,12 @@ fn a_save_redraws_the_live_page_and_a_bad_one_shows_its_error() {
     assert_eq!(page.value("document.getElementById('states-note').textContent.includes('since the last save')"), true);
     page.wait_for("document.querySelectorAll('#frames img').length === 2");
     page.picture(&pictures().join("live-saved.png"));
-    served.bench.write("short.rhai", SCRIPT.replace("laser.nearest", "laser.nearst"));
+    let wrong = SCRIPT.replace("laser.nearest", "laser.nearst").replace("robot.contact", "robot.contract");
+    served.bench.write("short.rhai", wrong);
     page.wait_for("!document.getElementById('error').hidden");
+    assert_eq!(page.value("document.querySelectorAll('#error-text pre').length"), 2);
+    let count = page.value("document.getElementById('error-count').textContent");
+    assert!(count.as_str().unwrap().starts_with("2 mistakes in"), "{count}");
     let text = page.value("document.getElementById('error-text').textContent");
     assert!(text.as_str().unwrap().contains("did you mean 'nearest'?"), "{text}");
     assert_eq!(page.value("document.querySelector('#script .wrong i').textContent"), "3");

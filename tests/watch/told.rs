@@ -44,6 +44,20 @@ fn a_bad_save_is_told_with_its_line_and_the_last_run_stays() {
 }
 
 #[test]
+fn every_mistake_of_a_save_is_a_block_of_text() {
+    let served = Served::new(&[]);
+    let mut socket = served.socket();
+    message(&mut socket, |said| said["kind"] == "run" && said["done"] == true);
+    served.bench.write("short.rhai", SCRIPT.replace("laser.nearest", "laser.nearst") + "filter(\"<b>\");\nworld(7);\n");
+    let failed = message(&mut socket, |said| said["kind"] == "failed");
+    let blocks: Vec<&str> = failed["blocks"].as_array().unwrap().iter().map(|block| block.as_str().unwrap()).collect();
+    assert_eq!(blocks.len(), 3, "{failed}");
+    assert!(blocks[0].contains("nearst") && blocks[1].contains("'<b>'") && blocks[2].contains("world(\"room\")"));
+    assert_eq!(failed["summary"], "3 mistakes in 'short.rhai'");
+    assert_eq!(failed["error"]["others"][0]["line"], 5);
+}
+
+#[test]
 fn the_world_is_watched_too() {
     let served = Served::new(&[]);
     let mut socket = served.socket();

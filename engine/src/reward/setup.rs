@@ -8,6 +8,7 @@ use crate::diagnostic::{Diagnostic, Kind, Mistakes, Result, printable};
 use crate::geometry::Twist;
 use crate::settings::{self, FilterSettings, PolicySettings, Settings, Value};
 use rhai::{AST, ASTNode, Dynamic, Engine, Expr, FnCallExpr, Map, NativeCallContext, Position, Stmt};
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -145,7 +146,8 @@ pub(super) struct SetUp {
 /// with its place: an unknown key, a value out of range, a setting made twice.
 pub(super) fn finish(log: &Log, code: &Code, ast: &AST, mistakes: &mut Mistakes) -> SetUp {
     let (settings, places, unread) = (Settings::default(), Places::new(), Unread::default());
-    let mut setup = Setup { code, ast, settings, places, unread, mistakes, call: Position::NONE };
+    let mut setup =
+        Setup { code, ast, settings, places, unread, mistakes, call: Position::NONE, entries: OnceCell::new() };
     for call in log.close() {
         setup.call = call.position;
         if let Err(wrong) = setup.apply(call.name, call.arguments) {
@@ -156,6 +158,9 @@ pub(super) fn finish(log: &Log, code: &Code, ast: &AST, mistakes: &mut Mistakes)
     SetUp { settings: setup.settings, places: setup.places, unread: setup.unread }
 }
 
+/// Where keys and their values stand, by call and key.
+type Entries = BTreeMap<(Position, String), (Position, Position)>;
+
 struct Setup<'a> {
     code: &'a Code,
     ast: &'a AST,
@@ -164,6 +169,7 @@ struct Setup<'a> {
     unread: Unread,
     mistakes: &'a mut Mistakes,
     call: Position,
+    entries: OnceCell<Entries>,
 }
 
 impl Setup<'_> {
@@ -339,25 +345,28 @@ impl Setup<'_> {
 
     /// Where a key and its value stand in the map of the present call; the call itself if they are not written there.
     fn entry(&self, key: &str) -> (Position, Position) {
-        let mut found = (self.call, self.call);
-        self.ast.walk(&mut |path: &[ASTNode<'_>]| {
-            let call: &FnCallExpr = match path.last() {
-                Some(ASTNode::Stmt(Stmt::FnCall(call, position)) | ASTNode::Expr(Expr::FnCall(call, position)))
-                    if *position == self.call =>
-                {
-                    call
-                }
-                _ => return true,
-            };
+        let entries = self.entries.get_or_init(|| entries(self.ast));
+        entries.get(&(self.call, key.to_owned())).copied().unwrap_or((self.call, self.call))
+    }
+}
+
+/// Where each key of each set-up call and its value stand.
+fn entries(ast: &AST) -> Entries {
+    let mut entries = Entries::new();
+    let is_setup = |call: &FnCallExpr| SETUP.iter().any(|row| row.name == call.name);
+    ast.walk(&mut |path: &[ASTNode<'_>]| {
+        if let Some(ASTNode::Stmt(Stmt::FnCall(call, at)) | ASTNode::Expr(Expr::FnCall(call, at))) = path.last()
+            && is_setup(call)
+        {
             for argument in &call.args {
-                if let Expr::Map(map, _) = argument
-                    && let Some((ident, value)) = map.0.iter().find(|(ident, _)| ident.name.as_str() == key)
-                {
-                    found = (ident.pos, value.start_position());
+                let Expr::Map(map, _) = argument else { continue };
+                for (ident, value) in &map.0 {
+                    let place = (ident.pos, value.start_position());
+                    entries.entry((*at, ident.name.to_string())).or_insert(place);
                 }
             }
-            false
-        });
-        found
-    }
+        }
+        true
+    });
+    entries
 }

@@ -15,6 +15,9 @@ use rhai::{AST, Stmt};
 use std::collections::BTreeSet;
 use std::ops::Range;
 
+/// How often all that uses a spoilt name is looked for, each time with the names found before.
+const MOST_ROUNDS: usize = 16;
+
 /// Names that stand for nothing certain.
 #[derive(Debug, Default)]
 pub(super) struct Spoilt {
@@ -76,7 +79,10 @@ impl Spoilt {
             return Vec::new();
         }
         let calls = |bytes: &Range<usize>| {
-            let words: BTreeSet<&str> = words(&code.plain[bytes.clone()]).collect();
+            let text = &code.plain[bytes.clone()];
+            // `laser` is facts too; a call has a bracket.
+            let is_call = |word: &&str| text[end_of(text, word)..].trim_start().starts_with('(');
+            let words: BTreeSet<&str> = words(text).filter(is_call).collect();
             SETUP.iter().map(|row| row.name).filter(move |name| words.contains(name)).collect::<Vec<_>>()
         };
         let spoilt = self.statements.iter().filter(|bytes| self.touches(code, bytes, mistakes));
@@ -101,7 +107,7 @@ impl Spoilt {
             })
             .collect();
         let variables: BTreeSet<&str> = known.variables.iter().map(String::as_str).collect();
-        loop {
+        for _ in 0..MOST_ROUNDS {
             let count = self.names.len();
             for (name, bytes) in &functions {
                 if self.touches(code, bytes, mistakes) {
@@ -120,6 +126,9 @@ impl Spoilt {
                 return;
             }
         }
+        // Nobody writes so: what is still uncertain is not worth the time.
+        let functions = functions.iter().map(|(name, _)| *name);
+        self.names.extend(variables.into_iter().chain(functions).chain(["calibrated"]).map(str::to_owned));
     }
 
     fn spread_from(&mut self, code: &Code, number: usize, statement: &Stmt, variables: &BTreeSet<&str>) {
@@ -155,7 +164,12 @@ fn statements(code: &Code, statements: &[Stmt]) -> Vec<Range<usize>> {
 fn words(text: &str) -> impl Iterator<Item = &str> {
     let part = |c: char| c.is_alphanumeric() || c == '_';
     text.split(move |c| !part(c)).filter(move |word| {
-        let at = word.as_ptr().addr() - text.as_ptr().addr();
+        let at = end_of(text, word) - word.len();
         !word.is_empty() && (!text[..at].ends_with('.') || text[..at].ends_with(".."))
     })
+}
+
+/// Where a part of a text ends in it.
+fn end_of(text: &str, part: &str) -> usize {
+    part.as_ptr().addr() - text.as_ptr().addr() + part.len()
 }

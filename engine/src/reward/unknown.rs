@@ -69,6 +69,6 @@ fn with_lines(wrong: Diagnostic, mut lines: Vec<usize>) -> Diagnostic {
             format!("it stands in lines {}{more} too", shown.join(", "))
         }
     };
-    let help = wrong.help.clone().map_or(words.clone(), |help| format!("{help}; {words}"));
+    let help = wrong.help.clone().map_or(words.clone(), |help| format!("{help} ({words})"));
     wrong.help(help)
 }

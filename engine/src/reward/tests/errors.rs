@@ -15,6 +15,7 @@ fn expect(text: &str, code: &str, marked: &str, help: &str) {
     let place = wrong.place.as_ref().unwrap_or_else(|| panic!("{text}: {wrong:?}"));
     let found = &place.source.text[place.span.clone()];
     let given = wrong.help.clone().unwrap_or_default();
+    assert!(wrong.others.is_empty(), "one cause, one error: {text}: {:?}", wrong.others);
     assert!(wrong.code == code && found == marked && given.contains(help), "{text}: {found:?} {wrong:?}");
     for jargon in ["i64", "f64", "ImmutableString", "Dynamic", "expr", "()", "closure"] {
         assert!(!wrong.message.contains(jargon), "{text}: {}", wrong.message);
@@ -239,10 +240,8 @@ fn a_damaged_script_is_never_a_panic() {
             let piece = pieces[random.below(pieces.len() as u32) as usize];
             let (before, after) = (&text[..at], text.get(at + skipped..).unwrap_or_default());
             let damaged: String = before.iter().copied().chain(piece.chars()).chain(after.iter().copied()).collect();
-            if let Err(wrong) = parse(&damaged)
-                && let Some(place) = &wrong.place
-            {
-                assert!(place.source.text.get(place.span.clone()).is_some(), "{damaged}");
+            if let Err(wrong) = parse(&damaged) {
+                super::mistakes::in_order(&wrong, &damaged);
             }
         }
     }

@@ -14,6 +14,7 @@ fn parse(text: &str) -> Result<Layout> {
 fn mistake(text: &str) -> (&'static str, String, String, String) {
     let error = *parse(text).unwrap_err();
     assert_eq!(error.kind, Kind::Input);
+    assert!(error.others.is_empty(), "one cause, one error: {text}: {:?}", error.others);
     let place = error.place.unwrap_or_else(|| panic!("no place: {}", error.message));
     let marked = place.source.text[place.span].to_owned();
     (error.code, marked, place.label, format!("{}; {}", error.message, error.help.unwrap_or_default()))
@@ -164,7 +165,7 @@ fn hostile_text_is_refused_without_harm() {
         (mistake(&"[".repeat(20_000)).0, "E-WORLD-SYNTAX"),
         (mistake(&format!("x = {}", "[".repeat(200_000))).0, "E-WORLD-SYNTAX"),
         (mistake(&format!("{}b = 1", "a.".repeat(200_000))).0, "E-WORLD-SYNTAX"),
-        (mistake("[light]\ngain = 1\ngain = 2\n").0, "E-WORLD-SYNTAX"),
+        (mistake(&format!("{START}[light]\ngain = 1\ngain = 2\n")).0, "E-WORLD-SYNTAX"),
         (mistake("\"\\u001b[31m\" = 1\n").0, "E-WORLD-KEY"),
     ];
     for (found, expected) in codes {
@@ -173,6 +174,55 @@ fn hostile_text_is_refused_without_harm() {
     let many = format!("{START}[[wall]]\npoints_m = [{}]\n", "[1, 1], [2, 1], ".repeat(4_900));
     assert!(parse(&many).is_ok());
     assert_eq!(mistake(&format!("{START}{}", many[START.len()..].repeat(3))).0, "E-WORLD-VALUE");
+}
+
+/// Line and code of each mistake.
+fn mistakes(text: &str) -> Vec<(usize, &'static str)> {
+    let error = parse(text).unwrap_err();
+    let line = |one: &Diagnostic| one.place.as_ref().map_or(0, |place| place.source.position(place.span.start).0);
+    error.all().map(|one| (line(one), one.code)).collect()
+}
+
+#[test]
+fn every_wrong_part_is_told_in_the_order_of_the_lines() {
+    let text = format!(
+        "[light]\ngain = 9\n{START}[[wall]]\npoints_m = [[1, 1], [2, 1]]\nheigth_m = 1\nmaterial = 3\n\
+         [[box]]\ncentre_m = [5, 5]\nsize_m = [1, 1, 1]\nmaterial = \"glass\"\n[[cylinder]]\nradius_m = 1\n"
+    );
+    let told =
+        [(2, "E-WORLD-VALUE"), (7, "E-WORLD-KEY"), (8, "E-WORLD-VALUE"), (12, "E-WORLD-NAME"), (13, "E-WORLD-KEY")];
+    assert_eq!(mistakes(&text), told);
+    let error = parse(&text).unwrap_err();
+    assert_eq!(error.summary().unwrap(), "5 mistakes in 'worlds/test.toml'");
+    assert!(error.others[3].help.as_ref().unwrap().ends_with("; it needs 'height_m' too"));
+    let starts = "[[start]]\nposition_m = [1.5, 1]\n[[start]]\nposition_m = [1, 1.2]\n";
+    assert_eq!(mistakes(&wall(starts)), [(6, "E-WORLD-START"), (8, "E-WORLD-START")]);
+    let twice = format!("{START}[light]\ngain = 1\ngain = 2\nambient = 0.1\nambient = 0.2\n");
+    assert_eq!(mistakes(&twice), [(5, "E-WORLD-SYNTAX"), (7, "E-WORLD-SYNTAX")]);
+}
+
+#[test]
+fn what_follows_from_a_mistake_is_not_told() {
+    let glass = "material = \"glass\"\n";
+    let material = |key: &str, colour: &str| format!("[[material]]\n{key} = \"glass\"\ncolour = {colour}\n");
+    // The material is there, or may be: only its own mistake is told.
+    for text in [material("name", "[1]"), material("nmae", "[1, 2, 3]"), material("name", "7")] {
+        assert_eq!(mistakes(&format!("{}{text}", wall(glass))).len(), 1, "{text}");
+    }
+    assert_eq!(mistakes(&format!("{}[[matrial]]\nname = \"glass\"\n", wall(glass))).len(), 1);
+    let mover = "[[mover]]\nname = \"a\"\nroute = \"b\"\nspeed_m_per_s = 1\nboxes = []\n";
+    let route = "[[route]]\nname = \"b\"\npoints_m = [[0, 0]]\n";
+    assert_eq!(mistakes(&format!("{START}{mover}{route}")).len(), 1);
+    assert_eq!(mistakes("[[start]]\nposition = [0, 0]\n"), [(2, "E-WORLD-KEY")]);
+}
+
+#[test]
+fn twenty_mistakes_of_a_world_are_shown_and_the_others_counted() {
+    let error = parse(&format!("{START}{}", "[[box]]\n".repeat(25))).unwrap_err();
+    assert_eq!((error.others.len(), error.left_out), (19, 5));
+    // As many as fit into a file: bounded in time and in memory.
+    let error = parse(&format!("{START}{}", "[[box]]\nx=1\n".repeat(19_000))).unwrap_err();
+    assert_eq!((error.others.len(), error.left_out), (19, 18_980));
 }
 
 #[test]
