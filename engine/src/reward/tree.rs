@@ -2,6 +2,7 @@
 
 use super::explain;
 use super::fact_table::GROUPS;
+use super::sandbox::MAX_VARIABLES;
 use super::source::Code;
 use crate::diagnostic::{Diagnostic, Kind, Mistakes};
 use rhai::{AST, Engine, Scope, Stmt};
@@ -10,6 +11,8 @@ use std::ops::Range;
 /// The most bytes that are parsed over and over to find further mistakes, and the most times.
 const MOST_BYTES: usize = 4 << 20;
 const MOST_TIMES: usize = 64;
+/// The most variables that a script may define, those of functions among them.
+const MOST_DEFINITIONS: usize = 1024;
 
 /// A script's tree.
 #[derive(Debug)]
@@ -34,6 +37,7 @@ pub(super) struct Known {
 /// # Errors
 /// If nothing after a mistake can be understood.
 pub(super) fn tree(engine: &mut Engine, code: &Code, mistakes: &mut Mistakes) -> Result<Tree, Diagnostic> {
+    few_definitions(code)?;
     engine.set_strict_variables(false);
     let (ast, lost, text) = parsed(engine, code, mistakes)?;
     let variables: Vec<String> = ast.statements().iter().filter_map(variable).collect();
@@ -50,6 +54,17 @@ pub(super) fn tree(engine: &mut Engine, code: &Code, mistakes: &mut Mistakes) ->
         Err(error) => (ast, Some(Box::new(explain::syntax(&code.source, &error, &variables)))),
     };
     Ok(Tree { ast, known: Known { variables, lost }, refused })
+}
+
+/// Checks that no more variables are defined than anyone needs: the parser compares each with all before it.
+fn few_definitions(code: &Code) -> Result<(), Diagnostic> {
+    let part = |c: char| c.is_alphanumeric() || c == '_';
+    let mut words = code.plain.split(|c| !part(c)).filter(|word| matches!(*word, "let" | "const"));
+    let Some(word) = words.nth(MOST_DEFINITIONS) else { return Ok(()) };
+    let at = word.as_ptr().addr() - code.plain.as_ptr().addr();
+    Err(Diagnostic::new(Kind::Limit, "E-SCRIPT-LIMIT", "there are too many variables".to_owned())
+        .at(&code.source, at..at + word.len(), "one too many")
+        .help(format!("a script may define {MOST_DEFINITIONS}, and have {MAX_VARIABLES} at one time")))
 }
 
 /// The tree without the statements that cannot be parsed, these, and the text without them if there are any.

@@ -21,7 +21,7 @@ impl Unknown {
         self.0.push((at, true, name.to_owned()));
     }
 
-    /// Adds the mistakes. Gives the names that look like no other, since whatever uses them is wrong too.
+    /// Adds the mistakes. Gives the names that are told once, since whatever else uses them is wrong too.
     pub(super) fn tell(
         mut self,
         code: &Code,
@@ -31,29 +31,39 @@ impl Unknown {
     ) -> BTreeSet<String> {
         // The tree is not walked in the order of the text, and a switch not even in the same order each time.
         self.0.sort_unstable();
-        let mut missing: BTreeMap<(bool, String), (Diagnostic, Vec<usize>)> = BTreeMap::new();
+        let mut places: BTreeMap<(bool, String), Vec<usize>> = BTreeMap::new();
         for (at, is_function, name) in self.0 {
-            let (line, _) = code.source.position(at);
-            let key = (is_function, name);
-            if let Some((_, lines)) = missing.get_mut(&key) {
-                lines.push(line);
-            } else if mistakes.wants(&code.source, at) {
-                let wrong = match is_function {
-                    true => explain::unknown_function_at(&code.source, at, &key.1, functions),
-                    false => explain::unknown_name_at(&code.source, at, &key.1, variables),
-                };
-                if wrong.help.as_ref().is_some_and(|help| help.starts_with("did you mean")) {
-                    mistakes.add(wrong);
-                } else if missing.len() < crate::diagnostic::MOST_MISTAKES {
-                    missing.insert(key, (wrong, vec![line]));
-                } else {
-                    mistakes.add(wrong);
-                }
-            }
+            places.entry((is_function, name)).or_default().push(at);
         }
-        let names = missing.keys().map(|(_, name)| name.clone()).collect();
-        missing.into_values().for_each(|(wrong, lines)| mistakes.add(with_lines(wrong, lines)));
-        names
+        let mut places: Vec<_> = places.into_iter().map(|(name, places)| (places, name)).collect();
+        places.sort_unstable();
+        let source = &code.source;
+        let mut once = BTreeSet::new();
+        for (places, (is_function, name)) in places {
+            let told = |at: usize| match is_function {
+                true => explain::unknown_function_at(source, at, &name, functions),
+                false => explain::unknown_name_at(source, at, &name, variables),
+            };
+            let first = if mistakes.wants(source, places[0]) { Some(told(places[0])) } else { None };
+            match first {
+                Some(wrong) if wrong.help.as_ref().is_some_and(|help| help.starts_with("did you mean")) => {
+                    mistakes.add(wrong);
+                    for at in places.into_iter().skip(1) {
+                        if mistakes.wants(source, at) {
+                            mistakes.add(told(at));
+                        }
+                    }
+                    continue;
+                }
+                Some(wrong) => {
+                    let lines = places.iter().map(|at| source.position(*at).0).collect();
+                    mistakes.add(with_lines(wrong, lines));
+                }
+                None => {}
+            }
+            once.insert(name);
+        }
+        once
     }
 }
 

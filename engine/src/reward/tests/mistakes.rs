@@ -131,7 +131,14 @@ fn characters_that_do_not_belong_are_told_once_a_line() {
 
 #[test]
 fn a_hostile_number_of_mistakes_is_counted_within_bounds() {
-    for (line, least) in [("f();", 50_000), ("x;", 50_000), ("camera.a;", 50_000), ("let a = ;", 1), ("\0\n", 50_000)] {
+    for (line, least) in [
+        ("f();", 50_000),
+        ("x;", 50_000),
+        ("camera.a;", 50_000),
+        ("let a = ;", 1),
+        ("camera(#{ tilt: 1 });", 200),
+        ("\0\n", 50_000),
+    ] {
         let error = wrong(&line.repeat(200_000 / line.len() * 2));
         in_order(&error, line);
         assert!(error.left_out + error.others.len() + 1 >= least.min(1), "{line}: {}", error.left_out);
