@@ -131,17 +131,19 @@ fn characters_that_do_not_belong_are_told_once_a_line() {
 
 #[test]
 fn a_hostile_number_of_mistakes_is_counted_within_bounds() {
-    for (line, least) in [
-        ("f();", 50_000),
-        ("x;", 50_000),
-        ("camera.a;", 50_000),
-        ("let a = ;", 1),
-        ("camera(#{ tilt: 1 });", 200),
+    let cases = [
+        ("f();", 1),
+        ("x;", 1),
+        ("camera.a;", 5_000),
+        ("world(=);\n", 10),
+        ("let a = 1;", 1),
+        ("camera(#{ tilt: 1 });\n", 1),
         ("\0\n", 50_000),
-    ] {
-        let error = wrong(&line.repeat(200_000 / line.len() * 2));
+    ];
+    for (line, least) in cases {
+        let error = wrong(&line.repeat(400_000 / line.len()));
         in_order(&error, line);
-        assert!(error.left_out + error.others.len() + 1 >= least.min(1), "{line}: {}", error.left_out);
+        assert!(error.left_out + error.others.len() + 1 >= least, "{line}: {}", error.left_out);
     }
     let rules: String =
         (0..3_000).map(|number| format!("rule \"{number}\" when laser.rigth < 1 => wave(1);")).collect();
