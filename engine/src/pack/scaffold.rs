@@ -15,7 +15,6 @@ use crate::diagnostic::{Diagnostic, Kind, Result, printable};
 use crate::experiment::{Overrides, Plan};
 use crate::filter::{Catalogue, Form, Sources};
 use crate::report::write_atomic;
-use crate::reward::Behaviour;
 use crate::store::load_members;
 
 const SCRIPT: &str = include_str!("../../../scripts/wall.rhai");
@@ -44,8 +43,7 @@ pub fn scaffold(name: &PackName, folder: &Path, from: Option<(&Path, Sources)>) 
             None
         }
         Some((script, sources)) => {
-            let filters = Arc::new(Catalogue::new(sources)?);
-            let plan = Plan::with_filters(Arc::new(Behaviour::load(script)?), &Overrides::default(), filters)?;
+            let plan = Plan::load(script, &Overrides::default(), || Catalogue::new(sources).map(Arc::new))?;
             capabilities = collect_filters(&plan, &mut files)?;
             collect(&plan, &mut files)?
         }
