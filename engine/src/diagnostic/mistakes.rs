@@ -132,7 +132,7 @@ mod tests {
     use crate::diagnostic::Kind;
 
     fn at(source: &SourceText, start: usize, message: &str) -> Diagnostic {
-        Diagnostic::new(Kind::Input, "E-TEST", message).at(source, start..start + 1, "here")
+        Diagnostic::new(Kind::Input, "E-IO", message).at(source, start..start + 1, "here")
     }
 
     #[test]
@@ -140,7 +140,7 @@ mod tests {
         let (script, world) = (SourceText::new("a.rhai", "one\ntwo\nthree"), SourceText::new("w.toml", "x"));
         let mut mistakes = Mistakes::new(&script);
         mistakes.add(at(&world, 0, "world"));
-        mistakes.add(Diagnostic::new(Kind::State, "E-TEST", "nowhere"));
+        mistakes.add(Diagnostic::new(Kind::State, "E-IO", "nowhere"));
         mistakes.add(at(&script, 8, "third"));
         mistakes.add(at(&script, 0, "first"));
         mistakes.add(at(&script, 8, "what follows from the third"));
