@@ -60,7 +60,8 @@ fn running_and_checking_tell_the_same() {
 fn beyond_twenty_mistakes_are_only_counted() {
     let bench = Bench::new();
     let rule = |number: u32| format!("rule \"{number}\" when laser.rigth > 1.0 => -1;\n");
-    bench.write("mine.rhai", "world(\"small\");\n".to_owned() + &(0..25).map(rule).collect::<String>());
+    let rules: String = (0..25).map(rule).collect();
+    bench.write("mine.rhai", format!("world(\"small\");\n{rules}"));
     let shown = bench.failure(&["run", "mine.rhai"]);
     assert_eq!(shown.matches("error[").count(), 20);
     assert!(shown.ends_with("\n25 mistakes in 'mine.rhai': 20 are shown, and 5 more\n"), "{shown}");
