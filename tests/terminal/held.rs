@@ -211,6 +211,26 @@ fn who_is_ended_from_outside_gives_the_terminal_back_too() {
 }
 
 #[test]
+fn whose_terminal_is_closed_ends_too() {
+    let bench = Bench::new();
+    let Some(mut held) = Held::new(&bench, &format!("exec {WATCH}")) else { return };
+    held.until_all("save 1,http://127.0.0.1:");
+    let text = held.terminal.text();
+    let port: String = text.split("127.0.0.1:").nth(1).unwrap().chars().take_while(char::is_ascii_digit).collect();
+    let address = format!("127.0.0.1:{port}");
+    assert!(std::net::TcpStream::connect(&address).is_ok());
+    // The terminal goes with the program that made it; nobody says good bye.
+    held.child.kill().unwrap();
+    let ends = || {
+        (0..1200).any(|_| {
+            std::thread::sleep(Duration::from_millis(100));
+            std::net::TcpStream::connect(&address).is_err()
+        })
+    };
+    assert!(ends(), "the program goes on without its terminal");
+}
+
+#[test]
 fn what_is_no_terminal_is_refused() {
     let bench = Bench::new();
     insta::assert_snapshot!(bench.failure(&["watch", "short.rhai", "--tui"]));

@@ -26,6 +26,7 @@ mod words;
 mod world;
 
 use std::io::IsTerminal;
+use std::mem::ManuallyDrop;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -69,12 +70,14 @@ pub fn require() -> Result<()> {
 
 /// The terminal while it is ours; given back however this ends.
 struct Screen {
-    terminal: DefaultTerminal,
+    /// Never dropped, since it writes of its own failure to standard error, which a closed terminal takes along.
+    terminal: ManuallyDrop<DefaultTerminal>,
 }
 
 impl Screen {
     fn open() -> Result<Self> {
-        Ok(Self { terminal: ratatui::try_init().map_err(|error| failed(&error))? })
+        let terminal = ratatui::try_init().map_err(|error| failed(&error))?;
+        Ok(Self { terminal: ManuallyDrop::new(terminal) })
     }
 
     fn draw(&mut self, view: &View) -> Result<()> {
@@ -87,6 +90,7 @@ impl Drop for Screen {
     fn drop(&mut self) {
         // Nobody is left to be told.
         let _ = ratatui::try_restore();
+        let _ = self.terminal.show_cursor();
     }
 }
 
@@ -126,8 +130,11 @@ fn follow(screen: &mut Screen, board: &Board, asker: &Asker, address: &str, stop
             stale = false;
         }
         let wait = if view.is_playing() { FRAME.saturating_sub(last.elapsed()) } else { GLANCE };
+        if !wait_for_key(wait) {
+            return Err(failed(&std::io::Error::other("it was closed")));
+        }
         // All that was typed meanwhile is one drawing.
-        let mut more = event::poll(wait).map_err(|error| failed(&error))?;
+        let mut more = event::poll(Duration::ZERO).map_err(|error| failed(&error))?;
         while more {
             stale = true;
             if let Event::Key(key) = event::read().map_err(|error| failed(&error))? {
@@ -142,6 +149,28 @@ fn follow(screen: &mut Screen, board: &Board, asker: &Asker, address: &str, stop
         }
     }
     Ok(())
+}
+
+/// Waits until a key is there or the time is over; false if the terminal is gone. Asked here, since the library that reads
+/// the keys never comes back from a terminal that was closed.
+#[cfg(unix)]
+fn wait_for_key(wait: Duration) -> bool {
+    use rustix::event::{PollFd, PollFlags, Timespec, poll};
+    let keys = rustix::stdio::stdin();
+    let mut keys = [PollFd::new(&keys, PollFlags::IN)];
+    let wait = Timespec { tv_sec: wait.as_secs() as i64, tv_nsec: i64::from(wait.subsec_nanos()) };
+    match poll(&mut keys, Some(&wait)) {
+        Ok(_) => !keys[0].revents().intersects(PollFlags::HUP | PollFlags::ERR | PollFlags::NVAL),
+        // A signal, such as that of another size.
+        Err(error) => error == rustix::io::Errno::INTR,
+    }
+}
+
+#[cfg(not(unix))]
+fn wait_for_key(wait: Duration) -> bool {
+    // What is wrong with the terminal is said by whoever reads the key.
+    let _ = event::poll(wait);
+    true
 }
 
 /// Whoever ends the program from outside gets the terminal back too.
