@@ -3,7 +3,7 @@ use std::sync::Arc;
 
 use engine::diagnostic::Result;
 use engine::experiment::{Overrides, Plan};
-use engine::lint::{self, Finding, Severity};
+use engine::lint::{self, Severity};
 use engine::reward::Behaviour;
 
 use crate::support::{Bench, root};
@@ -19,7 +19,7 @@ fn plan(path: &std::path::Path) -> Result<Plan> {
     Plan::new(Arc::new(Behaviour::load(path)?), &Overrides::default())
 }
 
-/// Code and line of everything that is wrong with a script, not counting notes.
+/// Code and line of everything that is wrong with a script.
 fn found(path: &std::path::Path) -> Vec<(String, usize)> {
     let plan = match plan(path) {
         Ok(plan) => plan,
@@ -28,9 +28,8 @@ fn found(path: &std::path::Path) -> Vec<(String, usize)> {
             return vec![(error.code.to_owned(), place.source.position(place.span.start).0)];
         }
     };
-    let bad = |finding: &Finding| finding.severity != Severity::Note;
     let findings = lint::check(&plan).unwrap().findings;
-    findings.iter().filter(|finding| bad(finding)).map(|f| (f.code.to_owned(), f.line)).collect()
+    findings.iter().map(|finding| (finding.code.to_owned(), finding.line)).collect()
 }
 
 #[test]

@@ -59,8 +59,6 @@ pub enum Severity {
     Error,
     /// Most likely not what is meant.
     Warning,
-    /// Worth knowing; nothing is wrong.
-    Note,
 }
 
 /// A text file as the user wrote it, kept so that errors can show its lines.

@@ -7,10 +7,8 @@ use clap::Args;
 use super::FilterSources;
 
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Exit status: 0 nothing found, or notes only; 1 errors or warnings; 2 usage; 3 it does not load; \
-                        4 a limit stopped it; 6 files and disk. 'engine explain CODE' prints the page of a code."
-)]
+#[command(after_help = "Exit status: 0 nothing found; 1 errors or warnings; 2 usage; 3 it does not load; \
+                        4 a limit stopped it; 6 files and disk. 'engine explain CODE' prints the page of a code.")]
 pub(crate) struct CheckArguments {
     /// The behaviour: a script such as scripts/wall.rhai, a .pack file, a pack's folder, or an installed pack's name
     pub(crate) behaviour: PathBuf,

@@ -71,8 +71,8 @@ pub(super) fn print_short(console: &mut Console, report: &Report) -> std::result
 fn counts(report: &Report) -> String {
     let count = |severity| report.findings.iter().filter(|finding| finding.severity == severity).count();
     let words = |count: usize, one: &str| format!("{count} {one}{}", if count == 1 { "" } else { "s" });
-    let [errors, warnings, notes] = [Severity::Error, Severity::Warning, Severity::Note].map(count);
-    format!("{}, {}, {}", words(errors, "error"), words(warnings, "warning"), words(notes, "note"))
+    let [errors, warnings] = [Severity::Error, Severity::Warning].map(count);
+    format!("{}, {}", words(errors, "error"), words(warnings, "warning"))
 }
 
 fn print_exploits(console: &mut Console, exploits: &Exploits) -> std::result::Result<(), ConsoleError> {

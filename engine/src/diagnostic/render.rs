@@ -49,7 +49,6 @@ impl Diagnostic {
         let level = match severity {
             Severity::Error => Level::ERROR,
             Severity::Warning => Level::WARNING,
-            Severity::Note => Level::NOTE,
         };
         let mut group = level.primary_title(&self.message).id(self.code);
         let mut report = Vec::new();

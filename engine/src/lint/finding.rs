@@ -43,13 +43,6 @@ impl Finding {
         self
     }
 
-    /// The same as a note: worth knowing, nothing wrong.
-    #[must_use]
-    pub fn as_note(mut self) -> Self {
-        self.severity = Severity::Note;
-        self
-    }
-
     /// A failure of the script in a step.
     #[must_use]
     pub(super) fn of_error(plan: &Plan, error: &Diagnostic) -> Self {

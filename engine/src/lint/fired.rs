@@ -43,11 +43,13 @@ fn never(plan: &Plan, index: usize, seen: &RuleTrial, needed: u64, steps: u64) -
     let rule = &plan.behaviour.outline().rules[index];
     let (name, span) = (name(plan, index), rule.condition_span.clone());
     if seen.held > 0 && seen.forestalled == seen.held {
+        if has_a_twin(plan, index) {
+            return None;
+        }
         let message = format!("{name} never fired: an earlier rule recovered each time");
         let label = format!("held in {} of {} steps, each time too late", seen.held, seen.looked);
         let help = "put it before the other rule, or make the two conditions exclude each other";
-        let finding = Finding::warning(plan, "W-RULE-SHADOWED", span, message).say(label, help);
-        return Some(if has_a_twin(plan, index) { finding.as_note() } else { finding });
+        return Some(Finding::warning(plan, "W-RULE-SHADOWED", span, message).say(label, help));
     }
     if needed > 1 && seen.held > 0 {
         let period_s = plan.settings.run.period_s;
@@ -61,6 +63,12 @@ fn never(plan: &Plan, index: usize, seen: &RuleTrial, needed: u64, steps: u64) -
         let place = rule.time_span.clone().unwrap_or(span);
         return Some(Finding::warning(plan, "W-PERSISTENCE", place, message).say(label, help));
     }
+    // Goals are rare before anything is learned, and so are accidents of the body and the end of one's patience.
+    let goal = plan.behaviour.fixed_value(index).is_some_and(|value| value > 0.0);
+    let rare = |fact: &(String, &str, f64, f64)| fact.0 == "robot.contact" || fact.0 == "robot.fallen";
+    if goal || seen.facts.iter().all(|fact| fact.0.starts_with("time.")) || seen.facts.iter().any(rare) {
+        return None;
+    }
     let read: Vec<String> = seen
         .facts
         .iter()
@@ -73,12 +81,7 @@ fn never(plan: &Plan, index: usize, seen: &RuleTrial, needed: u64, steps: u64) -
     let label = if read.is_empty() { "never held".to_owned() } else { read.join("; ") };
     let message = format!("{name} never fired in {steps} steps");
     let help = "check the threshold and that the world has what the rule is about";
-    let finding = Finding::warning(plan, "W-RULE-NEVER", span, message).say(label, help);
-    // Goals are rare before anything is learned, and so are accidents of the body and the end of one's patience.
-    let goal = plan.behaviour.fixed_value(index).is_some_and(|value| value > 0.0);
-    let rare = |fact: &(String, &str, f64, f64)| fact.0 == "robot.contact" || fact.0 == "robot.fallen";
-    let time = seen.facts.iter().all(|fact| fact.0.starts_with("time."));
-    Some(if goal || time || seen.facts.iter().any(rare) { finding.as_note() } else { finding })
+    Some(Finding::warning(plan, "W-RULE-NEVER", span, message).say(label, help))
 }
 
 /// Whether an earlier rule that recovers does just the same: then it does not matter which of the two fires.

@@ -51,7 +51,7 @@ impl Report {
     /// Whether there is an error or a warning.
     #[must_use]
     pub fn is_clean(&self) -> bool {
-        self.findings.iter().all(|finding| finding.severity == Severity::Note)
+        self.findings.is_empty()
     }
 }
 
@@ -95,7 +95,7 @@ fn look(plan: &Plan, threads: usize, stop: &AtomicBool) -> Result<Report> {
             Err(fault) => return Err(fault),
         }
     }
-    // If some must be left out, let it be notes.
+    // If some must be left out, let it be warnings.
     findings.sort_by_key(|finding| (finding.severity, finding.line));
     let left_out = findings.len().saturating_sub(MOST_FINDINGS);
     findings.truncate(MOST_FINDINGS);

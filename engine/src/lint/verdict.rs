@@ -69,10 +69,11 @@ pub(super) fn sentence(cheat: Option<&Exploit>, verdict: Verdict, honest_per_400
     }
 }
 
-/// The cheapest cheat as a finding, if it earns at least as much as driving on.
+/// The cheapest cheat as a finding, if it earns more than driving on. Where it earns the same the sentence says so: many good
+/// rewards punish only what must not happen.
 pub(super) fn check(plan: &Plan, exploits: &Exploits, findings: &mut Vec<Finding>) {
     let Some(cheat) = exploits.cheapest.map(|index| &exploits.behaviours[index]) else { return };
-    if exploits.verdict == Verdict::Loses || findings.iter().any(|finding| finding.code == "W-NO-CHOICE") {
+    if exploits.verdict != Verdict::Pays || findings.iter().any(|finding| finding.code == "W-NO-CHOICE") {
         return;
     }
     let outline = plan.behaviour.outline();
@@ -80,18 +81,11 @@ pub(super) fn check(plan: &Plan, exploits: &Exploits, findings: &mut Vec<Finding
     let span = outline.reward.clone().or(rule).unwrap_or(0..0);
     let [cheats, honest] = [cheat.reward_per_400, exploits.honest_per_400].map(|value| format!("{value:.1}"));
     let name = &cheat.behaviour;
+    let message = format!("the reward can be had without getting anywhere: '{name}' earns more than driving on");
     let label = format!("'{name}' earns {cheats} in 400 steps, driving on without a failure {honest}");
-    let finding = if exploits.verdict == Verdict::Pays {
-        let message = format!("the reward can be had without getting anywhere: '{name}' earns more than driving on");
-        let help = "reward speed or progress, or punish what the robot does instead: \
-                    rule \"spinning\" when abs(action.angular) >= 0.6 for 6 seconds => -1;";
-        Finding::warning(plan, "W-EXPLOIT", span, message).say(label, help)
-    } else {
-        let message = format!("nothing in the reward tells '{name}' from driving on");
-        let help = "look at the way that it learns to drive (engine run), not at the reinforcement alone";
-        Finding::warning(plan, "W-EXPLOIT", span, message).say(label, help).as_note()
-    };
-    findings.push(finding);
+    let help = "reward speed or progress, or punish what the robot does instead: \
+                rule \"spinning\" when abs(action.angular) >= 0.6 for 6 seconds => -1;";
+    findings.push(Finding::warning(plan, "W-EXPLOIT", span, message).say(label, help));
 }
 
 /// At most one place, and none where it is 0.

@@ -4,8 +4,7 @@
 pub(super) const PAGES: &[(&str, &str)] = &[
     (
         "W-EXPLOIT",
-        "A behaviour that gets nowhere earns at least as much as driving on: spinning in place, standing, U-turns.\n\
-      As a warning it earns more, and the learner will find it; as a note it earns the same, and nothing but luck keeps the robot going.\n\
+        "A behaviour that gets nowhere earns more than driving on: spinning in place, standing, U-turns. The learner will find it.\n\
       Each line of the table was driven in the simulator. Reward progress, or punish what the robot does instead of it.",
     ),
     (
@@ -34,7 +33,7 @@ pub(super) const PAGES: &[(&str, &str)] = &[
     (
         "W-RULE-NEVER",
         "A rule never fired in some thousand steps, driven at random, while learning and while trying to cheat.\n\
-      The label says what its facts were. As a note it is a goal, a time limit or a rare accident, which may be right.\n\
+      The label says what its facts were. Goals, time limits and accidents (contact, a fall) may be rare and are not reported.\n\
       Check the threshold, and that the world has what the rule is about.",
     ),
     (

@@ -9,7 +9,7 @@ use super::ink::Ink;
 use super::screen::{heading, nothing, write_all};
 use super::view::View;
 use super::words::{fit, lines};
-use crate::diagnostic::{Severity, printable};
+use crate::diagnostic::printable;
 
 /// Rows that the panel needs: of the mistake if there is one, else of the findings; none if there is nothing to say.
 pub(super) fn height(view: &View, width: u16) -> u16 {
@@ -45,8 +45,7 @@ fn found(view: &View, width: u16) -> Vec<Line<'static>> {
             let code = text.strip_prefix(&finding.code).filter(|_| row == 0);
             out.push(match code {
                 Some(rest) => {
-                    let own = if finding.severity == Severity::Note { Style::new() } else { view.ink.warning() };
-                    let code = Span::styled(finding.code.clone(), Ink::strong().patch(own));
+                    let code = Span::styled(finding.code.clone(), Ink::strong().patch(view.ink.warning()));
                     Line::from(vec![code, Span::raw(rest.to_owned())])
                 }
                 None => Line::raw(format!("  {text}")),
