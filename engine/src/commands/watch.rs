@@ -26,12 +26,12 @@ pub(crate) fn run(arguments: &WatchArguments, console: &mut Console) -> Result<u
     if arguments.tui {
         return Err(without_terminal());
     }
-    // What is wrong from the start is said here; what is saved wrong later, on the page.
-    super::sources::catalogue(&arguments.filters)?;
-    engine::reward::Behaviour::load(&arguments.behaviour)?;
-    let stop = super::stop::on_ctrl_c()?;
-    let sources = arguments.filters.clone();
     let (world, set) = (arguments.world.clone(), arguments.set.clone());
+    let overrides = Overrides { world, steps: arguments.steps, test_steps: None, set };
+    // What is wrong from the start is said here; what is saved wrong later, on the page.
+    let sources = arguments.filters.clone();
+    engine::experiment::Plan::load(&arguments.behaviour, &overrides, || super::sources::catalogue(&sources))?;
+    let stop = super::stop::on_ctrl_c()?;
     let board = Arc::new(Board::default());
     let keep = keep(arguments.keep.as_deref());
     let name = arguments.behaviour.file_stem().unwrap_or_default();
@@ -43,7 +43,7 @@ pub(crate) fn run(arguments: &WatchArguments, console: &mut Console) -> Result<u
         threads: arguments.threads.unwrap_or(0) as usize,
         keep,
         finished: out.clone().map(finished),
-        overrides: Overrides { world, steps: arguments.steps, test_steps: None, set },
+        overrides,
         filter_folders: sources.filter_dir.clone(),
         filters: Box::new(move || super::sources::catalogue(&sources)),
     };

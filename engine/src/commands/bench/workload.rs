@@ -6,7 +6,6 @@ use std::sync::Arc;
 use engine::diagnostic::{Diagnostic, Kind, Result, SourceText};
 use engine::experiment::{Cycle, Overrides, Plan};
 use engine::geometry::Twist;
-use engine::reward::Behaviour;
 use engine::robot::Robot;
 use engine::sensors::observation::Observation;
 use engine::world::Layout;
@@ -30,7 +29,6 @@ const ROW: usize = 100;
 /// # Errors
 /// If it cannot be made, or combines policies instead of learning.
 pub(super) fn plan(arguments: &BenchArguments) -> Result<Plan> {
-    let behaviour = Arc::new(Behaviour::load(&arguments.behaviour)?);
     let mut set = Vec::new();
     if let Some((width_px, height_px)) = arguments.size {
         set.extend([format!("camera.width_px={width_px}"), format!("camera.height_px={height_px}")]);
@@ -43,7 +41,8 @@ pub(super) fn plan(arguments: &BenchArguments) -> Result<Plan> {
         test_steps: None,
         set,
     };
-    let plan = Plan::with_filters(behaviour, &overrides, crate::commands::sources::catalogue(&arguments.filters)?)?;
+    let filters = || crate::commands::sources::catalogue(&arguments.filters);
+    let plan = Plan::load(&arguments.behaviour, &overrides, filters)?;
     if !plan.settings.policies.is_empty() {
         let message = format!("'{}' combines policies and learns nothing", plan.behaviour.name());
         return Diagnostic::new(Kind::Usage, "E-POLICY", message).help("measure a behaviour that learns").into();

@@ -131,7 +131,7 @@ pub(super) fn help(view: &View, area: Rect, buffer: &mut Buffer) {
         .collect();
     lines.push(Line::default());
     let more = [
-        "Save the script, its world or its filters: all seeds learn again from nothing.",
+        "Save the script, its world or its filters: all seeds learn again (--keep: on).",
         "The page in a browser is at",
     ];
     lines.extend(more.map(|words| Line::styled(words, Ink::quiet())));
