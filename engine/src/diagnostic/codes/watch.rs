@@ -5,7 +5,7 @@ pub(super) const PAGES: &[(&str, &str)] = &[
     (
         "E-WATCH-FEATURE",
         "This program was built without the live page, which needs a web server inside.\n\
-      Build it in: cargo build --release --features serve. A run's report.html is the same page and needs none.",
+      Build it in: cargo build --release, without --no-default-features. A run's report.html is the same page and needs none.",
     ),
     (
         "E-WATCH-FILES",
@@ -45,6 +45,6 @@ pub(super) const PAGES: &[(&str, &str)] = &[
     (
         "E-WATCH-TUI",
         "This program was built with the live page but without its view in the terminal.\n\
-      Build it in: cargo build --release --features tui. The page in a browser shows the same.",
+      Build it in: cargo build --release, without --no-default-features. The page in a browser shows the same.",
     ),
 ];
