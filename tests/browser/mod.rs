@@ -153,6 +153,26 @@ fn a_save_redraws_the_live_page_and_a_bad_one_shows_its_error() {
 
 #[cfg(feature = "serve")]
 #[test]
+fn a_reward_swapped_under_running_robots_goes_on_with_their_curve() {
+    let served = crate::watch::served::Served::new(&["--port", "0", "--keep", "--out", "kept"]);
+    let Some(mut page) = open(&served.address()) else { return };
+    page.wait_for("document.getElementById('moment').textContent.includes('of 800')");
+    served.bench.write(
+        "short.rhai",
+        SCRIPT.replace("\"contact\" when robot.contact => -1", "\"touch\" when robot.contact => -2"),
+    );
+    page.wait_for(
+        "document.getElementById('status').textContent.includes('reward swapped before step 800, table: keep')",
+    );
+    page.wait_for("document.getElementById('moment').textContent.includes('of 1,600')");
+    assert_eq!(page.value("document.getElementById('script').textContent.includes('touch')"), true);
+    page.wait_for("!document.getElementById('status').classList.contains('busy')");
+    page.size(DESK);
+    page.picture(&pictures().join("live-kept.png"));
+}
+
+#[cfg(feature = "serve")]
+#[test]
 fn what_the_reward_can_be_had_for_appears_after_a_save() {
     let served = crate::watch::served::Served::new(&[]);
     let Some(mut page) = open(&served.address()) else { return };

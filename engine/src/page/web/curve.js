@@ -53,11 +53,13 @@ class Curve {
     pen.rotate(-Math.PI / 2);
     label(pen, `reward per ${doc.window_steps} steps`, 0, 0, 'center', 'middle');
     pen.restore();
-    for (const { step, table } of doc.swaps) {
+    for (const [index, { step, table }] of doc.swaps.entries()) {
       const at = left + (step / doc.window_steps) * perWindow;
       line(pen, [[at, above], [at, height - below]], ink.quiet, 1, [1, 3]);
+      // The words of many swaps would run into each other.
+      if (doc.swaps.length > 3 && index < doc.swaps.length - 1) continue;
       const side = at > width / 2 ? 'right' : 'left';
-      label(pen, `reward swapped, table: ${table}`, at + (side === 'left' ? 5 : -5), height - below - 7, side, 'middle');
+      label(pen, `reward swap: ${table}`, at + (side === 'left' ? 5 : -5), above + 9, side, 'middle');
     }
     if (all.length > 1) this.band(pen, all);
     if (old.length) this.middle(pen, old, ink.before, [4, 3], 1.5);
