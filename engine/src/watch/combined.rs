@@ -9,6 +9,7 @@ use super::board::SeedRun;
 use super::files::Files;
 use super::findings;
 use super::relearn::Relearner;
+use super::session::MOST_LEDGER_BYTES;
 use crate::diagnostic::{Diagnostic, Kind, Result};
 use crate::experiment::{
     Cycle, Learned, Ledger, Member, Plan, RecordShape, Step, Tally, Trail, in_parallel, test_combined,
@@ -16,9 +17,6 @@ use crate::experiment::{
 use crate::learner::Policy;
 use crate::robot::SimulatedRobot;
 use crate::store::{load_members, policy_files};
-
-/// Room for the steps of all seeds, bytes; of longer tests the beginnings are kept.
-const MOST_LEDGER_BYTES: u64 = 512 << 20;
 
 /// Tests the combination with all seeds and shows it; its policies are watched from then on.
 pub(super) fn retest(again: &Relearner, plan: Plan, stop: &AtomicBool, files: &Mutex<Files>) -> Result<()> {

@@ -10,7 +10,7 @@ use crate::experiment::{Learned, Learning, Ledger, Leg, MOST_STEPS, Plan, Record
 use crate::learner::Carry;
 
 /// Room for the steps of all seeds, bytes; of longer runs the beginnings are kept.
-const MOST_LEDGER_BYTES: u64 = 512 << 20;
+pub(super) const MOST_LEDGER_BYTES: u64 = 512 << 20;
 /// Windows that all seeds together learn before a save is looked for, about; one takes 3 ms of a core.
 const WINDOWS_AT_ONCE: usize = 20;
 
