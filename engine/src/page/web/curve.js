@@ -30,16 +30,19 @@ class Curve {
       return;
     }
     const windows = Math.max(...[...all, ...old].map((curve) => curve.length), Math.ceil(doc.planned_steps / doc.window_steps));
-    const [left, right, above, below] = [44, 22, 8, 34];
+    const [right, above, below] = [22, 8, 34];
     let [low, high] = [Math.min(...values, 0), Math.max(...values, 0)];
     if (high === low) low = -1;
     const room = (high - low) * 0.06;
     [low, high] = [low - room, high + room];
+    const rows = ticks(low, high, (height - above - below) / 34);
+    // The numbers stand between the axis and its name.
+    const left = Math.max(44, 24 + Math.max(...rows.map((at) => pen.measureText(short(at)).width)));
     const perWindow = (width - left - right) / windows;
     const x = (index) => left + (index + 1) * perWindow;
     const y = (value) => above + ((high - value) / (high - low)) * (height - above - below);
     this.frame = { left, perWindow, windows, x, y, width, height, above, bottom: height - below, seed };
-    for (const at of ticks(low, high, (height - above - below) / 34)) {
+    for (const at of rows) {
       line(pen, [[left, y(at)], [width - right, y(at)]], at === 0 ? ink.quiet : ink.soft, 1);
       label(pen, short(at), left - 6, y(at), 'right', 'middle');
     }
