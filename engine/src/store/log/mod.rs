@@ -14,7 +14,7 @@
 //!
 //! The chain of digests begins with 32 zeros and ends as `log_sha256` in `summary.json`. All sizes follow from the header,
 //! so chunk `n` of learning begins at `48 + header + n * (1,024 * record + 32)`, and each chunk can be checked by itself. A
-//! record is laid out as in `experiment/ledger.rs`: reward, x, y, yaw as 8-byte floats; state, next state; action, flags
+//! record is laid out as in `experiment/ledger/record.rs`: reward, x, y, yaw as 8-byte floats; state, next state; action, flags
 //! (recover, contact, fallen, explored, prey), beam of the rule, nearest beam as 2 bytes each; nearest range, height, prey
 //! x, y, yaw and coverage as 4-byte floats; a bit for each rule; an 8-byte float for each rule without a fixed value.
 
