@@ -26,6 +26,8 @@ mod determinism;
 mod filters;
 /// One filter gives the same bytes linked in, in a native library and in WebAssembly.
 mod forms;
+/// Every shipped behaviour leaves the bytes that were recorded.
+mod golden;
 /// Every step kept, and brought back by its actions.
 mod ledger;
 /// Seeded mistakes and what is found in them; scripts that ship; ways to cheat.
