@@ -103,7 +103,7 @@ const READ_AT: &[(&str, &str, usize, &str)] = &[
 #[test]
 fn the_engine_reads_a_module_where_the_header_puts_its_fields() {
     let mut claims = Claims::new();
-    let layout = std::fs::read_to_string(root().join("engine/src/filter/wasm/layout.rs")).unwrap();
+    let layout = std::fs::read_to_string(root().join("engine/core/src/filter/wasm/layout.rs")).unwrap();
     for (of, field, offset, words) in READ_AT {
         claims.offset(of, field, *offset);
         assert!(layout.contains(words), "layout.rs reads {field} of {of} elsewhere");

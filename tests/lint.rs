@@ -3,8 +3,8 @@ use std::sync::Arc;
 
 use engine::diagnostic::Result;
 use engine::experiment::{Overrides, Plan};
-use engine::lint::{self, Severity};
 use engine::reward::Behaviour;
+use insight::lint::{self, Severity};
 
 use crate::support::{Bench, root};
 

@@ -12,7 +12,7 @@ fn a_quick_check_of_what_ships_fills_every_row_that_has_its_world() {
     assert_eq!(printed, written);
     assert_eq!(printed["quick"], true);
     let rows = printed["rows"].as_array().unwrap();
-    assert_eq!(rows.len(), engine::reproduce::CLAIMS.len());
+    assert_eq!(rows.len(), paper::CLAIMS.len());
     for row in rows {
         let measured = row["verdict"] != "not-measured";
         assert!(!measured || row["ours"].is_object() || row["verdict"] == "not-comparable", "{row}");

@@ -1,6 +1,6 @@
 use std::path::Path;
 
-use engine::pack::{Digest, Pack};
+use pack::{Digest, Pack};
 
 use super::forge::{Forged, HEAD, manifest, pack_of, small, small_entries, small_files, tar};
 use crate::support::{Bench, told};

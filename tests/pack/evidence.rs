@@ -2,7 +2,7 @@ use std::sync::atomic::AtomicBool;
 
 use engine::experiment::Overrides;
 use engine::filter::Sources;
-use engine::pack::{MAX_EVIDENCE_STEPS, MAX_SEED_STEPS, Pack, measure};
+use pack::{MAX_EVIDENCE_STEPS, MAX_SEED_STEPS, Pack, measure};
 
 use super::flow::small_folder;
 use super::forge::{HEAD, pack_of, small_files};
@@ -75,7 +75,7 @@ fn a_replay_finds_other_steps_and_a_policy_that_no_seed_is_said_to_learn() {
         let lied = text.replace(from, to);
         let mut bytes = Vec::new();
         let all = [("manifest.toml", lied.as_bytes())].into_iter().chain(files.iter().copied());
-        engine::pack::archive::write(all, &mut bytes).unwrap();
+        pack::archive::write(all, &mut bytes).unwrap();
         bench.write("lied.pack", bytes);
         let output = bench.engine(&["pack", "verify", "lied.pack", "--allow-unsigned", "--replay"]);
         let out = String::from_utf8(output.stdout.clone()).unwrap();

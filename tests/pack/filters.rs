@@ -1,4 +1,4 @@
-use engine::pack::Digest;
+use pack::Digest;
 
 use super::forge::{HEAD, pack_of, small_files};
 use crate::support::{Bench, root};
@@ -94,7 +94,7 @@ fn a_pack_with_a_sandboxed_filter_goes_the_whole_way() {
     assert!(matches!(output.status.code(), Some(0 | 1)), "{}", crate::support::told(&output));
     // What the author measured is what the user sees, through the filter of the pack.
     let summary: serde_json::Value = serde_json::from_str(&bench.read("out/summary.json")).unwrap();
-    let pack = engine::pack::Pack::load(&bench.path().join("a.pack")).unwrap();
+    let pack = pack::Pack::load(&bench.path().join("a.pack")).unwrap();
     let claim = &pack.manifest().evidence.as_ref().unwrap().seeds[1];
     assert_eq!((claim.seed, Some(claim.state_hash.as_str())), (2, summary["state_hash"].as_str()));
     let tested = bench.engine(&["test", "ada/bright"]);

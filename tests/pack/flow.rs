@@ -102,14 +102,14 @@ fn a_replay_says_bit_for_bit_or_where_it_differs() {
     let verify = ["pack", "verify", "a.pack", "--allow-unsigned", "--replay"];
     assert!(bench.ok(&verify).contains("reproduced bit for bit: 3 seeds"));
     // An author who claims a better first window, in a pack that is in order otherwise.
-    let pack = engine::pack::Pack::load(&bench.path().join("a.pack")).unwrap();
+    let pack = pack::Pack::load(&bench.path().join("a.pack")).unwrap();
     let text = pack.text("manifest.toml").unwrap().text;
     let start = text.find("reinforcement_per_400 = [").unwrap() + "reinforcement_per_400 = [".len();
     let end = start + text[start..].find(',').unwrap();
     let lied = format!("{}7.0{}", &text[..start], &text[end..]);
     let files: Vec<_> = pack.files().filter(|(path, _)| *path != "manifest.toml").collect();
     let mut bytes = Vec::new();
-    engine::pack::archive::write([("manifest.toml", lied.as_bytes())].into_iter().chain(files), &mut bytes).unwrap();
+    pack::archive::write([("manifest.toml", lied.as_bytes())].into_iter().chain(files), &mut bytes).unwrap();
     bench.write("a.pack", bytes);
     let output = bench.engine(&verify);
     let out = String::from_utf8(output.stdout.clone()).unwrap();
@@ -122,7 +122,7 @@ fn a_replay_says_bit_for_bit_or_where_it_differs() {
 fn a_replay_names_the_first_step_that_differs() {
     use engine::experiment::Overrides;
     use engine::filter::Sources;
-    use engine::pack::{Pack, draft, measure, replay};
+    use pack::{Pack, draft, measure, replay};
 
     let bench = Bench::new();
     let never = std::sync::atomic::AtomicBool::new(false);
@@ -139,7 +139,7 @@ fn a_replay_names_the_first_step_that_differs() {
     // The same from the ledgers themselves.
     let ledger = |pack: &Pack| {
         let runnable = pack.plan(&[], &Overrides::default(), Sources::default()).unwrap();
-        let mut log = engine::store::RunLog::new(&runnable.plan);
+        let mut log = insight::store::RunLog::new(&runnable.plan);
         engine::experiment::learn_into(&runnable.plan, 1, &never, &|_| (), &mut log.learning).unwrap();
         log.learning
     };
@@ -180,7 +180,7 @@ fn every_script_that_ships_can_be_packed() {
         }
         let script = path.to_str().unwrap();
         bench.ok(&["pack", "new", &format!("engine/{stem}"), "--from", script, "--out", &format!("folders/{stem}")]);
-        engine::pack::draft(&bench.path().join("folders").join(&stem)).unwrap();
+        pack::draft(&bench.path().join("folders").join(&stem)).unwrap();
     }
 }
 

@@ -1,4 +1,4 @@
-use engine::pack::Digest;
+use pack::Digest;
 
 use crate::support::{SCRIPT, WORLD};
 

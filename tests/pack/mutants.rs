@@ -1,7 +1,7 @@
 use std::path::Path;
 
-use engine::pack::{Pack, Password, Signature, TrustStore, key_line, new_keys, sign};
 use engine::random::{Random, Stream};
+use pack::{Pack, Password, Signature, TrustStore, key_line, new_keys, sign};
 
 use super::forge::{small, small_entries, tar};
 

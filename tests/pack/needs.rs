@@ -1,4 +1,4 @@
-use engine::pack::{Dependency, Digest, Offer, PackName, resolve};
+use pack::{Dependency, Digest, Offer, PackName, resolve};
 use semver::{Version, VersionReq};
 
 use super::forge::{HEAD, pack_of, small_files};

@@ -133,7 +133,7 @@ mod registry {
         let raw = skopeo(&["inspect", "--raw", "--tls-verify=false", &from]);
         assert!(raw.contains("application/vnd.engine.pack.v1.tar"), "{raw}");
         skopeo(&["copy", "--src-tls-verify=false", &from, "dir:copied"]);
-        let blob = engine::pack::Pack::load(&bench.path().join(&file)).unwrap().blob().to_string();
+        let blob = pack::Pack::load(&bench.path().join(&file)).unwrap().blob().to_string();
         assert!(
             std::fs::read(bench.path().join("copied").join(blob)).unwrap()
                 == std::fs::read(bench.path().join(&file)).unwrap()

@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 use engine::diagnostic::Kind;
 use engine::experiment::{Learned, Overrides, learn};
 use engine::filter::Sources;
-use engine::pack::Pack;
+use pack::Pack;
 
 use super::forge::{HEAD, pack_of, small_files};
 

@@ -1,6 +1,6 @@
 use std::path::Path;
 
-use engine::pack::Pack;
+use pack::Pack;
 
 use super::{archives, mutants, needs, trust};
 

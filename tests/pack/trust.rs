@@ -1,7 +1,7 @@
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use engine::pack::{Lock, Locked, Pack, PackName, Signer};
+use pack::{Lock, Locked, Pack, PackName, Signer};
 
 use super::flow::{signed_pack, small_folder};
 use super::forge::{HEAD, pack_of, small_files};

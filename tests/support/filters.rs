@@ -15,7 +15,7 @@ pub(crate) const PLAIN: [&str; 6] = ["blur", "colour", "floor", "horizon", "sobe
 
 /// What they are built with: the contract, and what compiles them for each processor.
 const LIBRARIES_OF_FILTERS: [(&str, &str); 2] =
-    [("filter_api", "plugins/filter-api/src/lib.rs"), ("dispatch", "plugins/dispatch/src/lib.rs")];
+    [("filter_api", "plugins/filter-api/src/lib.rs"), ("dispatch", "engine/dispatch/src/lib.rs")];
 
 /// SHA-256 of a file as `--allow-native` wants it.
 pub(crate) fn digest(path: &Path) -> String {

@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 
 /// The top of the repository.
 pub(crate) fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
 /// A scratch folder with a small world and whatever files a test writes.

@@ -2,10 +2,10 @@ use engine::diagnostic::SourceText;
 use engine::experiment::Leg;
 use engine::learner::Carry;
 use engine::reward::Behaviour;
-use engine::watch::Board;
-use engine::watch::terminal::{Ink, Panel, View};
 use ratatui::crossterm::event::KeyCode;
 use ratatui::style::{Color, Modifier};
+use watch::Board;
+use watch::terminal::{Ink, Panel, View};
 
 use super::{ADDRESS, INK, buffer, plan, put, save, screen, seen, view};
 use crate::support::{SCRIPT, WORLD};

@@ -1,6 +1,6 @@
-use engine::watch::Board;
-use engine::watch::terminal::{Panel, View, Wish};
 use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use watch::Board;
+use watch::terminal::{Panel, View, Wish};
 
 use super::{learn, save, screen, seen, view};
 use crate::support::{SCRIPT, WORLD};

@@ -10,13 +10,13 @@ use std::sync::atomic::AtomicBool;
 
 use engine::diagnostic::SourceText;
 use engine::experiment::{Ledger, Overrides, Plan, learn_into, test_into};
-use engine::page::{Document, Moments};
 use engine::reward::Behaviour;
-use engine::watch::terminal::{Ink, View, draw};
-use engine::watch::{Board, SavedRun, SeedRun};
 use engine::world::Layout;
+use insight::page::{Document, Moments};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
+use watch::terminal::{Ink, View, draw};
+use watch::{Board, SavedRun, SeedRun};
 
 use crate::support::{SCRIPT, WORLD};
 

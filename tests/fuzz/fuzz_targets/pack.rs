@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use engine::pack::{Pack, Signature, archive};
+use pack::{Pack, Signature, archive};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -1,0 +1,34 @@
+//! A fixed engine that learns robot behaviours which other people write as scripts.
+//!
+//! Data goes one way, and the rooms stand in its order:
+//!
+//! ```text
+//!   world -> sensors -> filter -> state -> learner -> (action) -> robot -> world
+//!                                   \-> reward: the script judges ->/
+//! ```
+//!
+//! `experiment` is the loop around them, `store` and `report` are what a run leaves, `settings`, `diagnostic`, `random`
+//! and `geometry` are what all share. ARCHITECTURE.md says what each room never knows.
+
+#![deny(unsafe_code)] // but for filter/native.rs, where libraries are called
+
+pub mod diagnostic;
+pub mod geometry;
+pub mod random;
+pub mod settings;
+
+pub mod world;
+
+pub mod sensors;
+
+pub mod filter;
+
+pub mod state;
+
+pub mod reward;
+
+pub mod learner;
+
+pub mod robot;
+
+pub mod experiment;

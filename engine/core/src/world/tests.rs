@@ -1,0 +1,213 @@
+//! How a robot drives, touches, climbs and falls.
+
+use super::*;
+use crate::diagnostic::SourceText;
+use crate::geometry::{Point3, Vector3};
+use std::f64::consts::FRAC_PI_2;
+
+const EXACT: RobotSettings = RobotSettings { lag_s: 0.0, speed_noise: 0.0, slip: 0.0, tick_s: 0.05 };
+
+fn layout(text: &str) -> Arc<Layout> {
+    Arc::new(Layout::parse(SourceText::new("test.toml", text)).unwrap_or_else(|error| panic!("{error:?}")))
+}
+
+fn world(text: &str) -> World {
+    World::new(layout(text), &EXACT, 0.5, 1)
+}
+
+fn shipped(name: &str) -> Arc<Layout> {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../worlds/{name}.toml"));
+    Arc::new(Layout::load(&path).unwrap_or_else(|error| panic!("{error:?}")))
+}
+
+fn drive(world: &mut World, linear: f64, angular: f64, periods: usize) -> Motion {
+    let mut last = Motion::default();
+    for _ in 0..periods {
+        last = world.advance(Twist::new(linear, angular));
+    }
+    last
+}
+
+const START: &str = "[[start]]\nposition_m = [0, 0]\n";
+const WALL_AHEAD: &str = "[[wall]]\npoints_m = [[1.05, -3], [1.05, 3]]\n[[start]]\nposition_m = [0, 0]\n";
+
+#[test]
+fn without_lag_and_noise_the_robot_does_just_what_it_is_told() {
+    let mut world = world(START);
+    let motion = drive(&mut world, 0.4, 0.0, 5);
+    assert!((world.body().pose.x_m - 1.0).abs() < 1e-12 && world.body().pose.y_m == 0.0);
+    assert!((motion.odometry.linear_m_per_s - 0.4).abs() < 1e-12 && !motion.contact);
+    assert_eq!(world.time_s(), 2.5);
+}
+
+#[test]
+fn a_wall_ahead_stops_the_body_at_its_front() {
+    let mut world = world(WALL_AHEAD);
+    let motion = drive(&mut world, 0.4, 0.0, 6);
+    assert!(motion.contact);
+    let gap = 1.0 - HALF_LENGTH_M - world.body().pose.x_m;
+    assert!((0.0..0.4 * 0.05 / 16.0 + 1e-9).contains(&gap), "{gap}");
+    assert!(motion.odometry.linear_m_per_s.abs() < 0.01);
+    let back = drive(&mut world, -0.2, 0.0, 1);
+    assert!(!back.contact && world.body().pose.x_m < 0.66);
+}
+
+#[test]
+fn turning_beside_a_wall_brings_a_corner_against_it() {
+    let mut world = world("[[wall]]\npoints_m = [[-3, -0.35], [3, -0.35]]\n[[start]]\nposition_m = [0, 0]\n");
+    // The inner face is 0.3 m away: the side at 0.238 m is clear, the corner at 0.344 m is not.
+    assert!(drive(&mut world, 0.0, 0.8, 2).contact);
+    assert!(world.body().pose.yaw_rad > 0.1);
+}
+
+#[test]
+fn a_low_kerb_is_climbed_and_a_higher_one_is_a_wall() {
+    let kerb = |height: f64| format!("[[box]]\ncentre_m = [2, 0]\nsize_m = [2, 4, {height}]\n{START}");
+    let mut low = world(&kerb(0.05));
+    assert!(!drive(&mut low, 0.4, 0.0, 10).contact);
+    assert!((low.body().z_m - 0.05).abs() < 1e-12 && low.body().pitch_rad == 0.0);
+    assert!(drive(&mut world(&kerb(0.08)), 0.4, 0.0, 10).contact);
+}
+
+#[test]
+fn a_ramp_lifts_the_body_and_its_nose() {
+    let ramp = "[[ramp]]\ncentre_m = [2, 0]\nsize_m = [2, 2, 0.4]\n\
+                [[platform]]\ncentre_m = [4, 0]\nsize_m = [2, 2, 0.4]\n[[start]]\nposition_m = [0, 0]\n";
+    let mut world = world(ramp);
+    assert!(!drive(&mut world, 0.4, 0.0, 10).contact);
+    let body = world.body();
+    // Halfway up a slope of 0.2.
+    assert!((body.z_m - 0.2).abs() < 1e-9 && (body.pitch_rad + libm::atan(0.2)).abs() < 1e-9, "{body:?}");
+    let nose = body.world_from_robot() * Point3::new(1.0, 0.0, 0.0);
+    assert!(nose.z > 0.35);
+    let up = drive(&mut world, 0.4, 0.0, 10);
+    assert!(!up.contact && !up.fallen && (world.body().z_m - 0.4).abs() < 1e-12);
+    let down = drive(&mut world, -0.4, 0.0, 20);
+    assert!(!down.contact && !down.fallen && world.body().z_m == 0.0);
+    // Placed across the slope it leans to its left, which is downhill: no pitch, negative roll.
+    world.place(Pose::new(2.0, 0.0, FRAC_PI_2));
+    let across = world.body();
+    assert!((across.z_m - 0.2).abs() < 1e-9 && across.pitch_rad.abs() < 1e-9, "{across:?}");
+    assert!((across.roll_rad + libm::atan(0.2)).abs() < 1e-9);
+    assert!(world.is_safe(across.pose) && !world.is_safe(Pose::new(2.0, 0.9, 0.0)));
+}
+
+#[test]
+fn the_side_of_a_ramp_is_a_wall() {
+    let ramp = "[[ramp]]\ncentre_m = [0, 2]\nsize_m = [2, 2, 0.4]\n[[start]]\nposition_m = [0.5, 0]\nyaw_deg = 90\n";
+    let mut world = world(ramp);
+    assert!(drive(&mut world, 0.4, 0.0, 8).contact);
+    assert!(world.body().pose.y_m < 1.0 - HALF_LENGTH_M + 1e-9);
+}
+
+#[test]
+fn over_the_edge_the_robot_falls_and_lies_still_until_it_is_placed() {
+    let mut world = World::new(shipped("platform"), &EXACT, 0.5, 1);
+    assert_eq!(world.body().z_m, 0.5);
+    let edge = Pose::new(3.0, 0.0, -FRAC_PI_2);
+    world.place(edge);
+    let mut periods = 0;
+    while !drive(&mut world, 0.2, 0.0, 1).fallen {
+        periods += 1;
+    }
+    // The front wheels leave the edge at 0.9 m when the centre is at 0.763 m.
+    assert_eq!(periods, 7);
+    let lying = world.body();
+    assert!((lying.pose.y_m + 0.77).abs() < 0.011, "{lying:?}");
+    assert!(drive(&mut world, -0.2, 0.0, 3).fallen);
+    assert_eq!(world.body(), lying);
+    world.place(edge);
+    assert!(!drive(&mut world, 0.2, 0.0, 1).fallen);
+}
+
+#[test]
+fn a_place_is_safe_when_nothing_touches_and_all_of_it_is_carried() {
+    let platform = World::new(shipped("platform"), &EXACT, 0.5, 1);
+    assert!(platform.is_safe(Pose::new(3.0, 0.6, 0.0)));
+    assert!(!platform.is_safe(Pose::new(3.0, 0.7, 0.0)));
+    let room = World::new(shipped("room"), &EXACT, 0.5, 1);
+    assert!(room.is_safe(Pose::new(3.0, 0.25, 0.0)));
+    assert!(!room.is_safe(Pose::new(3.0, 0.22, 0.0)));
+}
+
+#[test]
+fn the_prey_drives_along_its_route_and_can_be_touched() {
+    let mut world = World::new(shipped("object"), &EXACT, 0.5, 1);
+    assert_eq!(world.prey(), Some(Pose::new(4.0, 0.0, 0.0)));
+    let motion = drive(&mut world, 0.2, 0.0, 20);
+    let gap = world.prey().unwrap().x_m - world.body().pose.x_m;
+    assert!(!motion.contact && (gap - 1.1).abs() < 1e-9);
+    assert!((world.moving()[1].centre.x - 6.0).abs() < 1e-9);
+    // It stands 0.6 m ahead of the front after 20 periods and drives away at 0.2 m/s.
+    assert!(drive(&mut world, 0.4, 0.0, 10).contact);
+    assert!(!drive(&mut world, -0.2, 0.0, 2).contact);
+}
+
+#[test]
+fn the_same_seed_drives_the_same_way_and_another_does_not() {
+    let noisy = RobotSettings { lag_s: 0.15, speed_noise: 0.05, slip: 0.1, tick_s: 0.05 };
+    let end = |seed| {
+        let mut world = World::new(shipped("room"), &noisy, 0.33, seed);
+        drive(&mut world, 0.2, 0.4, 100);
+        world.body().pose
+    };
+    assert_eq!(end(3), end(3));
+    assert_ne!(end(3), end(4));
+}
+
+#[test]
+fn whatever_is_commanded_the_body_never_ends_inside_a_solid_or_in_the_air() {
+    let noisy = RobotSettings { lag_s: 0.15, speed_noise: 0.2, slip: 0.2, tick_s: 0.1 };
+    for name in ["room", "rectangle", "corridor", "platform"] {
+        let mut world = World::new(shipped(name), &noisy, 0.5, 9);
+        let mut random = crate::random::Random::new(9, crate::random::Stream::Test);
+        let (mut contacts, mut falls) = (0, 0);
+        for _ in 0..3_000 {
+            let motion = drive(&mut world, random.between(-0.2, 1.0), random.between(-1.0, 1.0), 1);
+            (contacts, falls) = (contacts + usize::from(motion.contact), falls + usize::from(motion.fallen));
+            let start = world.layout().starts[random.below(4) as usize];
+            if motion.fallen {
+                world.place(start);
+            }
+            let obstruction = world.layout().obstruction(world.body().pose);
+            assert!(!matches!(obstruction, Some(super::layout::Obstruction::Solid(_))), "{name}: {:?}", world.body());
+            assert!(name != "platform" || (world.body().z_m - 0.5).abs() < 1e-12);
+        }
+        assert!((name == "platform") == (falls > 0) && (name == "platform") == (contacts == 0), "{contacts} {falls}");
+    }
+}
+
+#[test]
+fn a_ray_meets_the_same_distances_as_a_ruler() {
+    let scene = &layout(
+        "[[wall]]\npoints_m = [[2.05, -3], [2.05, 3]]\n[[cylinder]]\ncentre_m = [0, 2]\nradius_m = 0.5\nheight_m = 1\n\
+         [[ramp]]\ncentre_m = [-2, 0]\nsize_m = [2, 2, 1]\nyaw_deg = 180\n[[start]]\nposition_m = [0, 0]\n",
+    )
+    .scene;
+    let cast = |z: f64, direction: Vector3| scene.cast_ray(Point3::new(0.0, 0.0, z), direction.normalize(), 100.0);
+    let ahead = cast(0.5, Vector3::x()).unwrap();
+    assert!((ahead.distance_m - 2.0).abs() < 1e-5 && (ahead.normal + Vector3::x()).norm() < 1e-6);
+    assert_eq!(ahead.solid, Some(0));
+    assert!((cast(0.5, Vector3::y()).unwrap().distance_m - 1.5).abs() < 1e-3);
+    // The ramp rises away from the origin, from x = -1 to x = -3.
+    let slope = cast(0.5, -Vector3::x()).unwrap();
+    assert!((slope.distance_m - 2.0).abs() < 1e-4, "{slope:?}");
+    let down = cast(0.5, Vector3::new(1.0, 0.0, -1.0)).unwrap();
+    assert!(down.solid.is_none() && (down.distance_m - 0.5 * std::f64::consts::SQRT_2).abs() < 1e-12);
+    assert_eq!(cast(2.0, Vector3::x()), None);
+    assert!((scene.ground_m(-2.5, 0.0, 9.0) - 0.75).abs() < 1e-12);
+    assert_eq!(scene.ground_m(-2.5, 0.0, 0.5), 0.0);
+}
+
+#[test]
+fn movers_go_as_many_times_as_fast_as_they_are_set_to() {
+    let after = |speed: f64| {
+        let mut world = World::new(shipped("object"), &EXACT, 0.5, 1).with_mover_speed(speed);
+        drive(&mut world, 0.0, 0.0, 20);
+        assert!((world.moving()[0].centre.x - world.prey().unwrap().x_m).abs() < 1e-12);
+        world.prey().unwrap().x_m
+    };
+    // 10 s from x = 4 m, at 0.2 m/s by the file.
+    assert!((after(1.0) - 6.0).abs() < 1e-9 && (after(1.5) - 7.0).abs() < 1e-9);
+    assert_eq!(after(0.0), 4.0);
+}

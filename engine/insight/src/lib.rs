@@ -1,0 +1,15 @@
+//! What a run leaves, and what can be seen in it.
+//!
+//! | module | what |
+//! |---|---|
+//! | [`store`] | `run.toml`, `policy.toml` and `log.bin`, written and read |
+//! | [`lint`] | mistakes in a behaviour, and ways to cheat its reward, found before it is learned |
+//! | [`report`] | pictures, CSV, files written whole or not at all |
+//! | [`page`] | a run as one document of data, and the HTML that shows it |
+//! | [`record`] | a run as an MCAP file for Foxglove and Rerun |
+
+pub mod lint;
+pub mod page;
+pub mod record;
+pub mod report;
+pub mod store;

@@ -1,0 +1,70 @@
+//! Rewards that do not depend on what the robot does.
+
+use super::{Exploit, Exploits, Finding, Trial};
+use engine::experiment::{Plan, WINDOW_STEPS};
+
+/// Rewards at random that are needed to tell them from those of another behaviour.
+const ENOUGH_EVENTS: usize = 20;
+
+const HELP: &str = "let a rule or 'fn reward' depend on where the actions lead: laser, camera, robot or action";
+
+/// What can be read from the script.
+pub(super) fn written(plan: &Plan, findings: &mut Vec<Finding>) {
+    let (outline, actions) = (plan.behaviour.outline(), &plan.settings.actions);
+    if actions.iter().all(|action| *action == actions[0]) && plan.settings.policies.is_empty() {
+        let span = plan.behaviour.place_of("actions").unwrap_or(0..0);
+        let message = "all actions are the same: there is nothing to choose";
+        findings.push(
+            Finding::warning(plan, "W-NO-CHOICE", span, message)
+                .say("one action", "give at least two, such as actions([[0.3, 0.3], [0.3, -0.3]])"),
+        );
+    }
+    if outline.groups.iter().all(|group| group == "time") {
+        let message = "the reward does not depend on what the robot does";
+        let label = if outline.groups.is_empty() { "reads no fact at all" } else { "reads nothing but the time" };
+        findings.push(Finding::warning(plan, "W-NO-CHOICE", place(plan), message).say(label, HELP));
+    }
+}
+
+/// What the trial shows: the same reward in every step, or for every way of driving.
+pub(super) fn observed(plan: &Plan, trial: &Trial, exploits: &Exploits, findings: &mut Vec<Finding>) {
+    let Some(first) = trial.transitions.first().map(|step| step.reward) else { return };
+    let constant = trial.transitions.iter().all(|step| step.reward == first && !step.recover);
+    // Rules that never fired have a finding of their own, and so has what makes them fire always.
+    let fired = trial.rules.iter().any(|rule| rule.fired > 0);
+    let explained = |finding: &Finding| matches!(finding.code, "W-NO-CHOICE" | "W-UNIT" | "W-RULE-ALWAYS");
+    if !fired || findings.iter().any(explained) {
+        return;
+    }
+    if constant {
+        let message = format!("every one of {} steps was rewarded alike, by {first}", trial.transitions.len());
+        let label = "no action was ever better than another";
+        findings.push(Finding::warning(plan, "W-NO-CHOICE", place(plan), message).say(label, HELP));
+    } else if let Some(mean) = alike(trial, exploits) {
+        let message = "whatever the robot does, it is rewarded alike";
+        let earned = mean * WINDOW_STEPS as f64;
+        let label =
+            format!("at random it earns {earned:.1} in 400 steps; the best, spinning and turning back the same");
+        findings.push(Finding::warning(plan, "W-NO-CHOICE", place(plan), message).say(label, HELP));
+    }
+}
+
+/// What a step earns at random, if no other behaviour earns more or less than chance explains.
+fn alike(trial: &Trial, exploits: &Exploits) -> Option<f64> {
+    let rewards: Vec<f64> = trial.random().iter().map(|step| step.reward).collect();
+    let count = rewards.len() as f64;
+    let mean = rewards.iter().sum::<f64>() / count;
+    let common = rewards.iter().filter(|reward| **reward != 0.0).count() >= ENOUGH_EVENTS;
+    let variance = rewards.iter().map(|reward| (reward - mean) * (reward - mean)).sum::<f64>() / count;
+    let same = |exploit: &Exploit| {
+        let chance = (variance / count + exploit.variance / exploit.steps as f64).sqrt();
+        (exploit.reward_per_400 / WINDOW_STEPS as f64 - mean).abs() <= 3.0 * chance
+    };
+    (common && exploits.behaviours.iter().all(same)).then_some(mean)
+}
+
+fn place(plan: &Plan) -> std::ops::Range<usize> {
+    let outline = plan.behaviour.outline();
+    let rule = outline.rules.first().map(|rule| rule.condition_span.clone());
+    outline.reward.clone().or(rule).unwrap_or(0..0)
+}

@@ -1,0 +1,118 @@
+//! Rules that never fired in the trial, always fired, were always forestalled, or wait too long.
+
+use super::exploit::Exploits;
+use super::trial::RuleTrial;
+use super::{Finding, Trial};
+use engine::diagnostic::printable;
+use engine::experiment::Plan;
+
+/// Steps in which a rule must have been asked before anything is said about all of them.
+const ENOUGH: u64 = 200;
+/// Share of the steps of a spin in which a condition must hold for its persistence to be blamed.
+const OFTEN: f64 = 0.25;
+
+pub(super) fn check(plan: &Plan, trial: &Trial, exploits: &Exploits, findings: &mut Vec<Finding>) {
+    let (outline, Ok(judge)) = (plan.behaviour.outline(), plan.judge()) else { return };
+    for (index, rule) in outline.rules.iter().enumerate() {
+        let explained = |finding: &Finding| {
+            let of_condition = matches!(finding.code, "W-UNIT" | "W-RULE-SHADOWED" | "W-NO-CHOICE");
+            of_condition && rule.condition_span.contains(&finding.span.start)
+        };
+        if findings.iter().any(explained) {
+            continue;
+        }
+        let seen = &trial.rules[index];
+        let needed = u64::from(judge.held(index).1);
+        let fixed = plan.behaviour.fixed_value(index).is_some() || rule.recover;
+        let found = match () {
+            () if seen.fired == 0 => never(plan, index, seen, needed, trial.steps()),
+            () if needed == 1 && fixed && seen.reached >= ENOUGH && seen.fired == seen.reached => {
+                Some(always(plan, index, seen))
+            }
+            () => spun(plan, index, needed, exploits),
+        };
+        findings.extend(found);
+    }
+}
+
+fn name(plan: &Plan, rule: usize) -> String {
+    format!("rule \"{}\"", printable(&plan.behaviour.rules()[rule].name))
+}
+
+fn never(plan: &Plan, index: usize, seen: &RuleTrial, needed: u64, steps: u64) -> Option<Finding> {
+    let rule = &plan.behaviour.outline().rules[index];
+    let (name, span) = (name(plan, index), rule.condition_span.clone());
+    if seen.held > 0 && seen.forestalled == seen.held {
+        if has_a_twin(plan, index) {
+            return None;
+        }
+        let message = format!("{name} never fired: an earlier rule recovered each time");
+        let label = format!("held in {} of {} steps, each time too late", seen.held, seen.looked);
+        let help = "put it before the other rule, or make the two conditions exclude each other";
+        return Some(Finding::warning(plan, "W-RULE-SHADOWED", span, message).say(label, help));
+    }
+    if needed > 1 && seen.held > 0 {
+        let period_s = plan.settings.run.period_s;
+        let message = format!("{name} never fired in {steps} steps: it waits too long");
+        let label = format!(
+            "held for {:.1} s in a row at most, and {:.1} s are asked for",
+            seen.longest as f64 * period_s,
+            needed as f64 * period_s
+        );
+        let help = "make the time after 'for' shorter, or the condition easier to meet";
+        let place = rule.time_span.clone().unwrap_or(span);
+        return Some(Finding::warning(plan, "W-PERSISTENCE", place, message).say(label, help));
+    }
+    // Goals are rare before anything is learned, and so are accidents of the body and the end of one's patience.
+    let goal = plan.behaviour.fixed_value(index).is_some_and(|value| value > 0.0);
+    let rare = |fact: &(String, &str, f64, f64)| fact.0 == "robot.contact" || fact.0 == "robot.fallen";
+    if goal || seen.facts.iter().all(|fact| fact.0.starts_with("time.")) || seen.facts.iter().any(rare) {
+        return None;
+    }
+    let read: Vec<String> = seen
+        .facts
+        .iter()
+        .map(|(name, unit, low, high)| match *unit {
+            "" if low == high => format!("{name} was always {}", *low > 0.5),
+            "" => format!("{name} was true and false"),
+            unit => format!("{name} was {low:.2} to {high:.2} {unit}"),
+        })
+        .collect();
+    let label = if read.is_empty() { "never held".to_owned() } else { read.join("; ") };
+    let message = format!("{name} never fired in {steps} steps");
+    let help = "check the threshold and that the world has what the rule is about";
+    Some(Finding::warning(plan, "W-RULE-NEVER", span, message).say(label, help))
+}
+
+/// Whether an earlier rule that recovers does just the same: then it does not matter which of the two fires.
+fn has_a_twin(plan: &Plan, index: usize) -> bool {
+    let (rules, value) = (&plan.behaviour.outline().rules, plan.behaviour.fixed_value(index));
+    let same = |earlier: usize| rules[earlier].recover && plan.behaviour.fixed_value(earlier) == value;
+    rules[index].recover && value.is_some() && (0..index).any(same)
+}
+
+fn always(plan: &Plan, index: usize, seen: &RuleTrial) -> Finding {
+    let rule = &plan.behaviour.outline().rules[index];
+    let name = name(plan, index);
+    let message = format!("{name} fired in every one of {} steps", seen.reached);
+    let help = "a value that comes always teaches nothing: tighten the condition, or let the value depend on a fact";
+    Finding::warning(plan, "W-RULE-ALWAYS", rule.condition_span.clone(), message).say("held every time", help)
+}
+
+/// A rule whose condition holds most of the time that the robot spins in place, and yet never for long enough.
+fn spun(plan: &Plan, index: usize, needed: u64, exploits: &Exploits) -> Option<Finding> {
+    let rule = &plan.behaviour.outline().rules[index];
+    let spins = exploits.behaviours.iter().filter(|exploit| exploit.cheat && exploit.behaviour.starts_with("spin"));
+    let spins: Vec<&RuleTrial> = spins.filter_map(|exploit| exploit.rules.get(index)).collect();
+    let escapes = |seen: &&RuleTrial| seen.fired == 0 && seen.held as f64 >= OFTEN * seen.looked as f64;
+    if needed < 2 || spins.is_empty() || !spins.iter().all(escapes) {
+        return None;
+    }
+    let period_s = plan.settings.run.period_s;
+    let longest = spins.iter().map(|seen| seen.longest).max().unwrap_or(0);
+    let message = format!("a robot that spins in place never meets {}", name(plan, index));
+    let label = format!("spinning meets it for {:.1} s at most", longest as f64 * period_s);
+    let help = format!("write 'for {:.1} seconds' or less", longest.saturating_sub(1).max(1) as f64 * period_s);
+    let span = rule.time_span.clone().unwrap_or_else(|| rule.condition_span.clone());
+    Some(Finding::warning(plan, "W-PERSISTENCE", span, message).say(label, help))
+}

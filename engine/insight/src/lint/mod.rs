@@ -1,0 +1,118 @@
+//! LINT. What is wrong or suspicious in a behaviour that loads, before anyone waits for it to learn.
+//!
+//! First what can be read from the script, then what a few thousand steps show, then the best that this reward can be had
+//! for. Everything is deterministic: the same script and world give the same findings.
+
+mod choice;
+mod exploit;
+mod finding;
+mod fired;
+mod loops;
+mod model;
+mod scale;
+mod setup;
+mod shadow;
+mod trial;
+mod units;
+mod verdict;
+
+pub use exploit::{Exploit, Exploits};
+pub use finding::{Finding, Severity};
+pub use model::{Coverage, Model};
+pub use trial::{Trial, TrialStep};
+pub use verdict::Verdict;
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use engine::diagnostic::{Kind, Result};
+use engine::experiment::Plan;
+
+/// The most findings of one behaviour that are kept.
+pub const MOST_FINDINGS: usize = 20;
+
+/// What was found.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct Report {
+    /// Name of the behaviour.
+    pub behaviour: String,
+    /// Name of the world.
+    pub world: String,
+    /// Steps that were tried.
+    pub steps: u64,
+    /// What is wrong or suspicious, in the order of the lines; 20 at most.
+    pub findings: Vec<Finding>,
+    /// How many more there are.
+    pub left_out: usize,
+    /// What the reward can be had for; absent where policies are combined or a step failed.
+    pub exploits: Option<Exploits>,
+}
+
+impl Report {
+    /// Whether there is an error or a warning.
+    #[must_use]
+    pub fn is_clean(&self) -> bool {
+        self.findings.is_empty()
+    }
+}
+
+/// Looks a behaviour over: its text, some thousand steps, and what its reward can be had for.
+///
+/// # Errors
+/// If a sensor or a filter fails, or a limit stops the script; any other failure of it in a step is a finding.
+pub fn check(plan: &Plan) -> Result<Report> {
+    look(plan, 0, &AtomicBool::new(false))
+}
+
+/// The same on so many threads (0: one for each core), until `stop` is set: then nothing.
+///
+/// # Errors
+/// As [`check`].
+pub fn check_until(plan: &Plan, threads: usize, stop: &AtomicBool) -> Result<Option<Report>> {
+    let report = look(plan, threads, stop)?;
+    Ok((!stop.load(Ordering::Relaxed)).then_some(report))
+}
+
+/// What is found once `stop` is set means nothing.
+fn look(plan: &Plan, threads: usize, stop: &AtomicBool) -> Result<Report> {
+    // Only the last of several rewards is on trial.
+    let plan = &plan.clone().after(Vec::new());
+    let mut findings = read(plan);
+    let (mut steps, mut exploits) = (0, None);
+    if plan.settings.policies.is_empty() {
+        let tried = Trial::run(plan, threads, stop)
+            .and_then(|mut trial| Ok((Exploits::find(plan, &mut trial, threads, stop)?, trial)));
+        match tried {
+            Ok((found, trial)) => {
+                steps = trial.steps();
+                fired::check(plan, &trial, &found, &mut findings);
+                scale::observed(plan, &trial, &mut findings);
+                choice::observed(plan, &trial, &found, &mut findings);
+                verdict::check(plan, &found, &mut findings);
+                exploits = Some(found);
+            }
+            // The script's own mistake is a finding like others; what a limit stopped is none.
+            Err(fault) if fault.kind == Kind::Input => findings.push(Finding::of_error(plan, &fault)),
+            Err(fault) => return Err(fault),
+        }
+    }
+    // If some must be left out, let it be warnings.
+    findings.sort_by_key(|finding| (finding.severity, finding.line));
+    let left_out = findings.len().saturating_sub(MOST_FINDINGS);
+    findings.truncate(MOST_FINDINGS);
+    findings.sort_by_key(|finding| (finding.line, finding.code));
+    let (behaviour, world) = (plan.behaviour.name().to_owned(), plan.layout.name.clone());
+    Ok(Report { behaviour, world, steps, findings, left_out, exploits })
+}
+
+/// What can be read from the script and its settings, without a step.
+#[must_use]
+pub fn read(plan: &Plan) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    units::check(plan, &mut findings);
+    shadow::check(plan, &mut findings);
+    loops::check(plan, &mut findings);
+    scale::written(plan, &mut findings);
+    setup::check(plan, &mut findings);
+    choice::written(plan, &mut findings);
+    findings
+}

@@ -1,0 +1,95 @@
+//! Set-up that nothing reads: settings without effect, constants and functions that nothing uses.
+
+use super::Finding;
+use engine::experiment::Plan;
+use engine::settings::SETTINGS;
+
+pub(super) fn check(plan: &Plan, findings: &mut Vec<Finding>) {
+    for row in SETTINGS {
+        let name = row.name();
+        let Some(span) = plan.behaviour.place_of(&name) else { continue };
+        let Some((why, help)) = idle(plan, &name) else { continue };
+        let message = format!("{name} is set, but nothing reads it");
+        findings.push(Finding::warning(plan, "W-UNUSED", span, message).say(why, help));
+    }
+    for unused in &plan.behaviour.outline().unused {
+        let (what, name) = (unused.what, &unused.name);
+        let message = match name.as_str() {
+            "calibrate" => "what 'fn calibrate' returns is never read".to_owned(),
+            _ => format!("the {what} '{name}' is never used"),
+        };
+        let help = match name.as_str() {
+            "calibrate" => "read it as 'calibrated' in a rule, or take the function out".to_owned(),
+            _ => format!("use it, or take it out; look for a name that should be '{name}'"),
+        };
+        findings.push(
+            Finding::warning(plan, "W-UNUSED", unused.span.clone(), message).say("defined here and nowhere read", help),
+        );
+    }
+    same_actions(plan, findings);
+}
+
+/// Why a setting has no effect, and what to do about it.
+fn idle(plan: &Plan, name: &str) -> Option<(String, &'static str)> {
+    let (settings, outline) = (&plan.settings, plan.behaviour.outline());
+    let (learner, combines) = (&settings.learner, !settings.policies.is_empty());
+    let reads_laser = outline.groups.iter().any(|group| group == "laser");
+    let (group, key) = name.split_once('.')?;
+    let kind = |kinds: &[&str]| kinds.contains(&learner.kind.as_str());
+    let why = match (group, key) {
+        ("laser", _) if !reads_laser => ("no rule reads the laser".to_owned(), "take it out, or read laser.nearest"),
+        ("learner", "window") if kind(&["q", "sarsa-lambda"]) => {
+            (format!("learner \"{}\" has no window", learner.kind), "take it out, or write learner(\"ttd\", ...)")
+        }
+        ("learner", "trace_decay") if kind(&["q"]) => {
+            ("learner \"q\" has no traces".to_owned(), "take it out, or write learner(\"ttd\", ...)")
+        }
+        ("learner", "trace_decay") if learner.window == 1 && kind(&["ttd", "ttd-cichosz"]) => {
+            ("a window of 1 has no earlier states".to_owned(), "set learner.window to 3 or more, or take it out")
+        }
+        ("learner", "cooling_visits") if learner.temperature <= learner.temperature_end => (
+            "the temperature is the lowest from the start".to_owned(),
+            "set learner.temperature higher, or take it out",
+        ),
+        ("learner", "failure_is_terminal" | "replay") | ("recovery", _) if !outline.recovers() => {
+            ("no rule recovers".to_owned(), "add 'then recover' to a rule, or take it out")
+        }
+        ("recovery", "distance_m") if settings.recovery.to != "behind" => {
+            (format!("recovery is to \"{}\"", settings.recovery.to), "write recovery(\"behind\", ...), or take it out")
+        }
+        ("movers", _) if plan.layout.movers.is_empty() => {
+            (format!("nothing drives by itself in world '{}'", plan.layout.name), "take it out, or use another world")
+        }
+        ("combine", "margin") if settings.combine.way == "sum" => {
+            ("policies are combined by sum".to_owned(), "take it out, or write combine(\"priority\", ...)")
+        }
+        ("combine", "scaled") if settings.combine.way == "priority" => {
+            ("policies are combined by priority".to_owned(), "take it out, or write combine(\"sum\", ...)")
+        }
+        ("learner", key) if combines && !matches!(key, "temperature_end" | "kind") => {
+            ("policies are combined, nothing is learned".to_owned(), "take it out")
+        }
+        ("run", "steps") if combines => ("policies are combined, nothing is learned".to_owned(), "take it out"),
+        ("robot", "tick_s") if settings.robot.tick_s >= settings.run.period_s => {
+            ("a tick is not shorter than the time between two actions".to_owned(), "set it below run.period_s")
+        }
+        ("grid", "fill") if settings.grid.rows == 1 => {
+            ("a grid of one row has nothing to fill".to_owned(), "take it out, or use more rows")
+        }
+        _ => return None,
+    };
+    Some(why)
+}
+
+fn same_actions(plan: &Plan, findings: &mut Vec<Finding>) {
+    let actions = &plan.settings.actions;
+    let Some(span) = plan.behaviour.place_of("actions") else { return };
+    let twice = (1..actions.len()).find(|index| actions[..*index].contains(&actions[*index]));
+    let one = actions.iter().all(|action| *action == actions[0]);
+    if let (Some(index), false) = (twice, one) {
+        let action = actions[index];
+        let message = format!("action {index} stands twice in the list");
+        let label = format!("[{}, {}] again", action.linear_m_per_s, action.angular_rad_per_s);
+        findings.push(Finding::warning(plan, "W-UNUSED", span, message).say(label, "keep one of the two"));
+    }
+}

@@ -1,0 +1,228 @@
+//! A few thousand steps, with what each rule did in them: chosen at random, then while learning.
+
+use std::sync::atomic::AtomicBool;
+
+use engine::diagnostic::Result;
+use engine::experiment::{Cycle, Ledger, Plan, Step, TestRun, in_parallel, learn_into, test_choices};
+use engine::learner::Policy;
+use engine::random::{Random, Stream};
+use engine::robot::SimulatedRobot;
+
+/// Steps with actions at random.
+const RANDOM_STEPS: u64 = 1_000;
+/// Steps of learning.
+const LEARNING_STEPS: u64 = 2_400;
+/// The seed of all trials.
+const SEED: u64 = 0x11_47;
+
+/// One step of a trial.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrialStep {
+    /// The state in which the action was chosen.
+    pub state: usize,
+    /// The action.
+    pub action: usize,
+    /// The reward.
+    pub reward: f64,
+    /// Whether the robot was brought back.
+    pub recover: bool,
+    /// The state in which the next action was chosen, after any recovery; nothing after the last step.
+    pub next: Option<usize>,
+}
+
+/// What one rule did.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct RuleTrial {
+    /// Steps in which it fired.
+    pub fired: u64,
+    /// Steps in which no earlier rule recovered, so that it was asked.
+    pub reached: u64,
+    /// Steps in which its condition was looked at, and of these those in which it held.
+    pub looked: u64,
+    pub held: u64,
+    /// Steps in which it held but an earlier rule recovered.
+    pub forestalled: u64,
+    /// The longest time for which it held, steps.
+    pub longest: u64,
+    /// The greatest value that it added, either way.
+    pub largest: f64,
+    /// What its condition read: name, unit, least, greatest.
+    pub facts: Vec<(String, &'static str, f64, f64)>,
+    now: u64,
+}
+
+/// What one drive left.
+#[derive(Debug, Clone)]
+pub(super) struct Drive {
+    pub run: TestRun,
+    pub steps: Vec<TrialStep>,
+    pub rules: Vec<RuleTrial>,
+}
+
+/// Steps that were tried.
+#[derive(Debug, Clone)]
+pub struct Trial {
+    /// All steps, drive after drive.
+    pub transitions: Vec<TrialStep>,
+    /// What the short learning came to.
+    pub(super) learned: Option<Policy>,
+    pub(super) rules: Vec<RuleTrial>,
+}
+
+impl Trial {
+    /// Drives at random and learns for a while, both at once; both end early once `stop` is set.
+    ///
+    /// # Errors
+    /// If a sensor, a filter or the script fails.
+    pub fn run(plan: &Plan, threads: usize, stop: &AtomicBool) -> Result<Self> {
+        let drives = in_parallel(&[0, 1], threads, |kind| match kind {
+            0 => random(plan, stop).map(|drive| (drive.steps, drive.rules, None)),
+            _ => learning(plan, stop).map(|(steps, rules, policy)| (steps, rules, Some(policy))),
+        })?;
+        let rules = vec![RuleTrial::default(); plan.behaviour.rules().len()];
+        let mut trial = Self { transitions: Vec::new(), learned: None, rules };
+        for (steps, rules, policy) in drives {
+            trial.add(&steps, &rules);
+            trial.learned = policy.or(trial.learned);
+        }
+        Ok(trial)
+    }
+
+    /// How many steps were tried.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.transitions.len() as u64
+    }
+
+    /// The steps with actions at random.
+    pub(super) fn random(&self) -> &[TrialStep] {
+        self.transitions.get(..RANDOM_STEPS as usize).unwrap_or_default()
+    }
+
+    /// Adds one more drive.
+    pub(super) fn add(&mut self, steps: &[TrialStep], rules: &[RuleTrial]) {
+        self.transitions.extend_from_slice(steps);
+        for (sum, rule) in self.rules.iter_mut().zip(rules) {
+            sum.merge(rule);
+        }
+    }
+}
+
+impl RuleTrial {
+    fn merge(&mut self, other: &Self) {
+        self.fired += other.fired;
+        self.reached += other.reached;
+        self.looked += other.looked;
+        self.held += other.held;
+        self.forestalled += other.forestalled;
+        self.longest = self.longest.max(other.longest);
+        if other.largest.abs() > self.largest.abs() {
+            self.largest = other.largest;
+        }
+        for (name, unit, low, high) in &other.facts {
+            self.read(name, unit, *low);
+            self.read(name, unit, *high);
+        }
+    }
+
+    fn read(&mut self, name: &str, unit: &'static str, value: f64) {
+        match self.facts.iter_mut().find(|fact| fact.0 == name) {
+            Some((_, _, low, high)) => (*low, *high) = (low.min(value), high.max(value)),
+            None => self.facts.push((name.to_owned(), unit, value, value)),
+        }
+    }
+
+    fn fire(&mut self, value: f64) {
+        self.fired += 1;
+        if value.abs() > self.largest.abs() {
+            self.largest = value;
+        }
+    }
+}
+
+/// Drives by `choose` for some steps, with a look at every rule in each.
+pub(super) fn drive(
+    plan: &Plan,
+    steps: u64,
+    seed: u64,
+    stop: &AtomicBool,
+    choose: impl FnMut(usize) -> usize,
+) -> Result<Drive> {
+    let mut plan = plan.clone();
+    plan.settings.run.test_steps = steps;
+    let recovers: Vec<bool> = plan.behaviour.outline().rules.iter().map(|rule| rule.recover).collect();
+    let mut rules = vec![RuleTrial::default(); plan.behaviour.rules().len()];
+    let mut kept: Vec<TrialStep> = Vec::with_capacity(steps as usize);
+    let mut watch = |cycle: &Cycle<SimulatedRobot>, step: &Step| {
+        if let Some(last) = kept.last_mut() {
+            last.next = Some(step.state);
+        }
+        let Step { state, action, reward, recover, .. } = *step;
+        kept.push(TrialStep { state, action, reward, recover, next: None });
+        look(cycle, recover, &recovers, &mut rules);
+    };
+    let run = test_choices(&plan, seed, stop, choose, &mut watch)?;
+    Ok(Drive { run, steps: kept, rules })
+}
+
+/// Notes what every rule did in a step.
+fn look(cycle: &Cycle<SimulatedRobot>, recovered: bool, recovers: &[bool], rules: &mut [RuleTrial]) {
+    let (judge, mut forestalled) = (cycle.judge(), false);
+    for (index, (rule, fired)) in rules.iter_mut().zip(cycle.fired()).enumerate() {
+        rule.reached += u64::from(!forestalled);
+        if let Some(value) = fired {
+            rule.fire(*value);
+        }
+        let Some(recovering) = recovers.get(index) else { continue };
+        rule.looked += 1;
+        if judge.holds(index) {
+            rule.held += 1;
+            rule.now += 1;
+            rule.longest = rule.longest.max(rule.now);
+            rule.forestalled += u64::from(forestalled);
+        } else {
+            rule.now = 0;
+        }
+        if recovered {
+            rule.now = 0;
+        }
+        forestalled |= *recovering && fired.is_some();
+        // A rule that fires needs no explanation.
+        if rule.fired == 0 {
+            for fact in judge.evidence(index).into_iter().flat_map(|part| part.facts) {
+                rule.read(&fact.name, fact.unit, fact.value);
+            }
+        }
+    }
+}
+
+fn random(plan: &Plan, stop: &AtomicBool) -> Result<Drive> {
+    let (mut random, actions) = (Random::new(SEED, Stream::Test), plan.settings.actions.len() as u32);
+    drive(plan, RANDOM_STEPS, SEED, stop, |_| random.below(actions) as usize)
+}
+
+fn learning(plan: &Plan, stop: &AtomicBool) -> Result<(Vec<TrialStep>, Vec<RuleTrial>, Policy)> {
+    let mut plan = plan.clone();
+    plan.settings.run.steps = LEARNING_STEPS;
+    let mut ledger = Ledger::new(&plan, LEARNING_STEPS);
+    let learned = learn_into(&plan, SEED, stop, &|_| (), &mut ledger)?.whole()?;
+    let mut rules = vec![RuleTrial::default(); plan.behaviour.rules().len()];
+    let recovers: Vec<bool> = plan.behaviour.outline().rules.iter().map(|rule| rule.recover).collect();
+    let mut steps: Vec<TrialStep> = Vec::with_capacity(ledger.len());
+    for (index, record) in ledger.records().enumerate() {
+        let (state, action) = (record.state as usize, usize::from(record.action));
+        if let Some(last) = steps.last_mut() {
+            last.next = Some(state);
+        }
+        steps.push(TrialStep { state, action, reward: record.reward, recover: record.recover, next: None });
+        let mut asked = rules.len();
+        for (rule, value) in ledger.fired(index) {
+            rules[rule].fire(value);
+            if recovers.get(rule) == Some(&true) {
+                asked = rule + 1;
+            }
+        }
+        rules.iter_mut().take(asked).for_each(|rule| rule.reached += 1);
+    }
+    Ok((steps, rules, learned.policy))
+}

@@ -1,0 +1,162 @@
+//! Whether cheating pays: the cheapest cheat against driving on without a failure.
+
+use super::{Exploit, Exploits, Finding};
+use engine::experiment::{Plan, WINDOW_STEPS};
+
+/// A cheat that is brought back more often than this in 1,000 steps is none.
+const MOST_FAILURES: f64 = 20.0;
+
+/// What the cheapest cheat earns, held against driving on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// More: the reward can be had without getting anywhere.
+    Pays,
+    /// As much, as far as chance lets one tell: the reward does not say which is better.
+    Equal,
+    /// Less, or there is no cheat that gets by.
+    Loses,
+}
+
+/// Which behaviour is the cheapest cheat, and whether it pays. `largest` is the greatest reward of any step, either way.
+pub(super) fn judge(behaviours: &[Exploit], honest_per_400: f64, largest: f64) -> (Option<usize>, Verdict) {
+    let earns = |exploit: &Exploit| exploit.nowhere && exploit.failures_per_1000 <= MOST_FAILURES;
+    let idle = behaviours.iter().enumerate().filter(|(_, exploit)| earns(exploit));
+    let Some((index, cheat)) = idle.reduce(|a, b| if b.1.reward_per_400 > a.1.reward_per_400 { b } else { a }) else {
+        return (None, Verdict::Loses);
+    };
+    let scale = honest_per_400.abs().max(cheat.reward_per_400.abs());
+    // Less than one event in 400 steps is no difference.
+    let chance = 3.0 * WINDOW_STEPS as f64 * (cheat.variance / cheat.steps as f64).sqrt();
+    let sure = chance + largest.max(0.02 * scale);
+    let more = cheat.reward_per_400 - honest_per_400;
+    let verdict = match () {
+        () if more < -sure.min(0.5 * scale) => Verdict::Loses,
+        () if more > sure => Verdict::Pays,
+        () => Verdict::Equal,
+    };
+    (Some(index), verdict)
+}
+
+/// The verdict for a person.
+pub(super) fn sentence(cheat: Option<&Exploit>, verdict: Verdict, honest_per_400: f64) -> String {
+    let honest = figure(honest_per_400);
+    let Some(cheat) = cheat else {
+        return "No cheat gets by: whatever gets nowhere here fails more than 20 times in 1,000 steps.".to_owned();
+    };
+    let (name, earned) = (&cheat.behaviour, figure(cheat.reward_per_400));
+    let speed = match cheat.net_m_per_s {
+        Some(net) => format!("a net {:.2} m/s along the route", positive_zero(net, 100.0)),
+        None => format!("{:.2} m/s", cheat.speed_m_per_s),
+    };
+    let cost = match cheat.failures_per_1000 {
+        0.0 => speed,
+        failures => format!("{speed} and {} failures in 1,000", figure(failures)),
+    };
+    match verdict {
+        Verdict::Pays => format!(
+            "The reward can be had without getting anywhere: '{name}' earns {earned} in 400 steps, with {cost}; driving on \
+             without a failure earns {honest}."
+        ),
+        Verdict::Equal => format!(
+            "Nothing in the reward tells '{name}' from driving on: it earns {earned} in 400 steps, with {cost}; driving on \
+             without a failure earns {honest}."
+        ),
+        Verdict::Loses => format!(
+            "No cheat pays: '{name}', the cheapest, earns {earned} in 400 steps, with {cost}; driving on without a failure \
+             earns {honest}."
+        ),
+    }
+}
+
+/// The cheapest cheat as a finding, if it earns more than driving on. Where it earns the same the sentence says so: many good
+/// rewards punish only what must not happen.
+pub(super) fn check(plan: &Plan, exploits: &Exploits, findings: &mut Vec<Finding>) {
+    let Some(cheat) = exploits.cheapest.map(|index| &exploits.behaviours[index]) else { return };
+    if exploits.verdict != Verdict::Pays || findings.iter().any(|finding| finding.code == "W-NO-CHOICE") {
+        return;
+    }
+    let outline = plan.behaviour.outline();
+    let rule = outline.rules.first().map(|rule| rule.condition_span.clone());
+    let span = outline.reward.clone().or(rule).unwrap_or(0..0);
+    let [cheats, honest] = [cheat.reward_per_400, exploits.honest_per_400].map(|value| format!("{value:.1}"));
+    let name = &cheat.behaviour;
+    let message = format!("the reward can be had without getting anywhere: '{name}' earns more than driving on");
+    let label = format!("'{name}' earns {cheats} in 400 steps, driving on without a failure {honest}");
+    let help = "reward speed or progress, or punish what the robot does instead: \
+                rule \"spinning\" when abs(action.angular) >= 0.6 for 6 seconds => -1;";
+    findings.push(Finding::warning(plan, "W-EXPLOIT", span, message).say(label, help));
+}
+
+/// At most one place, and none where it is 0.
+fn figure(value: f64) -> String {
+    positive_zero(value, 10.0).to_string()
+}
+
+/// Rounded to one part in `parts`; what rounds to 0 has no sign.
+fn positive_zero(value: f64, parts: f64) -> f64 {
+    (value * parts).round() / parts + 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn exploit(behaviour: &str, reward_per_400: f64, failures_per_1000: f64, nowhere: bool) -> Exploit {
+        Exploit {
+            behaviour: behaviour.to_owned(),
+            cheat: true,
+            reward_per_400,
+            speed_m_per_s: 0.05,
+            net_m_per_s: Some(-0.001),
+            spinning: 1.0,
+            failures_per_1000,
+            nowhere,
+            steps: 400,
+            rules: Vec::new(),
+            clean: 0.0,
+            variance: 0.0,
+        }
+    }
+
+    fn judged(behaviours: &[Exploit], honest_per_400: f64) -> (Option<usize>, Verdict, String) {
+        let (cheapest, verdict) = judge(behaviours, honest_per_400, 1.0);
+        (cheapest, verdict, sentence(cheapest.map(|index| &behaviours[index]), verdict, honest_per_400))
+    }
+
+    #[test]
+    fn the_cheapest_cheat_earns_most_of_those_that_get_nowhere_and_seldom_fail() {
+        let all = [
+            exploit("drive", 90.0, 0.0, false),
+            exploit("stand", 40.0, 2.5, true),
+            exploit("spin", 60.0, 0.0, true),
+            exploit("crash", 80.0, 20.5, true),
+        ];
+        let (cheapest, verdict, sentence) = judged(&all, 50.0);
+        assert_eq!((cheapest, verdict), (Some(2), Verdict::Pays));
+        assert_eq!(
+            sentence,
+            "The reward can be had without getting anywhere: 'spin' earns 60 in 400 steps, with a net 0.00 m/s along the \
+             route; driving on without a failure earns 50."
+        );
+    }
+
+    #[test]
+    fn less_than_one_event_is_no_difference() {
+        let all = [exploit("spin", -0.96, 2.5, true)];
+        let (_, verdict, sentence) = judged(&all, 0.0);
+        assert_eq!(verdict, Verdict::Loses, "half of what is at stake is much where next to nothing is");
+        assert!(sentence.starts_with("No cheat pays: 'spin', the cheapest, earns -1 in 400 steps, "), "{sentence}");
+        assert!(sentence.contains("along the route and 2.5 failures in 1,000; "), "{sentence}");
+        assert_eq!(judged(&[exploit("spin", 50.5, 0.0, true)], 50.0).1, Verdict::Equal);
+        assert_eq!(judged(&[exploit("spin", 49.5, 0.0, true)], 50.0).1, Verdict::Equal);
+        assert_eq!(judged(&[exploit("spin", 48.5, 0.0, true)], 50.0).1, Verdict::Loses);
+    }
+
+    #[test]
+    fn where_every_cheat_fails_too_often_there_is_none() {
+        let (cheapest, verdict, sentence) = judged(&[exploit("spin", 60.0, 21.0, true)], 50.0);
+        assert_eq!((cheapest, verdict), (None, Verdict::Loses));
+        assert!(sentence.starts_with("No cheat gets by"), "{sentence}");
+    }
+}

@@ -1,0 +1,245 @@
+//! All that the page knows of a run: the plan's side of it. What each seed did stands in [`SeedView`].
+
+use serde::Serialize;
+
+use super::seed::{SeedData, SeedView};
+use super::{Checked, Finding, Ground, Moments, Shot};
+use engine::diagnostic::Result;
+use engine::experiment::{Plan, WINDOW_STEPS};
+use engine::learner::Carry;
+use engine::settings::{SETTINGS, Settings, Value};
+use engine::world::{HALF_LENGTH_M, HALF_WIDTH_M};
+
+/// The contract's number; a page shows only documents of its own.
+const FORMAT: u32 = 2;
+/// Beams of the laser that are drawn, at most.
+const MOST_SCAN_BEAMS: usize = 37;
+/// The most bytes of tracks and pictures in one document; seeds beyond it have curve and policy only.
+const MOST_EMBEDDED_BYTES: usize = 2_300_000;
+/// Numbers in 16 bits reach this far from zero.
+const REACH: f64 = 32_000.0;
+
+/// One run, of one seed or many.
+#[derive(Debug, Clone, Serialize)]
+pub struct Document {
+    /// The contract's number.
+    pub format: u32,
+    /// The program's version.
+    pub engine: &'static str,
+    /// Name of the behaviour.
+    pub behaviour: String,
+    /// Path of the script as the user gave it.
+    pub script_path: String,
+    /// The script's text.
+    pub script: String,
+    /// What stands in the world, from above.
+    pub world: Ground,
+    /// Metres that 1 means in places of a track.
+    pub unit_m: f64,
+    /// Half of the robot's length and width, metres.
+    pub robot_half_m: [f64; 2],
+    /// Time between two steps, seconds.
+    pub period_s: f64,
+    /// Steps in a window of the curve.
+    pub window_steps: u64,
+    /// Steps of learning that are planned, in all legs.
+    pub planned_steps: u64,
+    /// Where the reward was swapped while the robot learned.
+    pub swaps: Vec<Swap>,
+    /// Forward speed, m/s, and turning speed, rad/s, of each action.
+    pub actions: Vec<[f64; 2]>,
+    /// Rows and columns of the grid.
+    pub grid: [usize; 2],
+    /// The laser's beams in tracks.
+    pub scan: ScanShape,
+    /// The rules in their order, `fn reward` last.
+    pub rules: Vec<RuleView>,
+    /// The settings that differ from their defaults first, then the others.
+    pub settings: Vec<SettingView>,
+    /// The seeds.
+    pub seeds: Vec<SeedView>,
+    /// Moments with their pictures.
+    pub shots: Vec<Shot>,
+    /// What reading the script found; what trying it out found too, where that was done.
+    pub findings: Vec<Finding>,
+    /// What trying it out came to; null if it was only read.
+    pub checked: Option<Checked>,
+}
+
+/// A swap of the reward while the robot learned.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Swap {
+    /// The first step under the new reward.
+    pub step: u64,
+    /// What became of the table.
+    pub table: Carry,
+}
+
+/// How the laser's beams stand in a track.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ScanShape {
+    /// Beams of the laser.
+    pub beams: usize,
+    /// Every so many of them are kept, from beam 0 on.
+    pub every: usize,
+    /// How many are kept.
+    pub kept: usize,
+    /// The longest range, metres.
+    pub max_range_m: f64,
+    /// Place of the laser ahead of the robot's centre, metres.
+    pub forward_m: f64,
+    /// How far it looks down, radians.
+    pub tilt_rad: f64,
+}
+
+/// One rule.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RuleView {
+    /// Its name.
+    pub name: String,
+    /// Its first line in the script, from 1.
+    pub line: usize,
+    /// How many lines it has.
+    pub lines: usize,
+    /// What it adds whenever it fires; null if that depends on the step.
+    pub value: Option<f64>,
+}
+
+/// One setting.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SettingView {
+    /// Its name, such as `camera.tilt_deg`.
+    pub name: String,
+    /// Its value.
+    pub value: String,
+    /// Its unit, in words.
+    pub unit: &'static str,
+    /// Whether it differs from the default.
+    pub changed: bool,
+}
+
+impl Document {
+    /// A run as the page shows it; `moments` says which steps bring pictures and scans with them.
+    ///
+    /// # Errors
+    /// If a recorded step cannot be played again.
+    pub fn new(plan: &Plan, seeds: &[SeedData<'_>], moments: Moments) -> Result<Self> {
+        let mut document = Self::without_seeds(plan)?;
+        for data in seeds {
+            document.seeds.push(SeedView::new(plan, data)?);
+        }
+        let mut bytes = 0;
+        // The seed that fails most is the one to look at; then the others in their order.
+        let badness = |index: &usize| (document.seeds[*index].badness(), std::cmp::Reverse(*index));
+        let first = if moments.seeds.is_some() { Some(0) } else { (0..seeds.len()).max_by_key(badness) };
+        let order = first.into_iter().chain((0..seeds.len()).filter(|index| Some(*index) != first));
+        for index in order.take(moments.seeds.unwrap_or(usize::MAX)) {
+            if bytes > MOST_EMBEDDED_BYTES / 2 && bytes + bytes_of_next(bytes, &document) > MOST_EMBEDDED_BYTES {
+                break;
+            }
+            let shots =
+                document.seeds[index].add_tracks(plan, &seeds[index], document.unit_m, document.scan, moments)?;
+            bytes += document.seeds[index].bytes() + shots.iter().map(Shot::bytes).sum::<usize>();
+            document.shots.extend(shots);
+        }
+        document.first_shown(first);
+        Ok(document)
+    }
+
+    /// One seed with its steps, as a document that left them out is completed; in the form of a job that may find nothing.
+    #[must_use]
+    pub fn tracks_of(plan: &Plan, data: &SeedData<'_>) -> Option<Result<SeedView>> {
+        let moments = Moments { shots: 0, scans: true, seeds: Some(1) };
+        let made = Self::new(plan, std::slice::from_ref(data), moments);
+        made.map(|mut document| document.seeds.pop()).transpose()
+    }
+
+    /// The plan's side of a document.
+    ///
+    /// # Errors
+    /// If the grid cannot be made.
+    pub fn without_seeds(plan: &Plan) -> Result<Self> {
+        let Settings { run, actions, laser, .. } = &plan.settings;
+        let world = Ground::new(&plan.layout);
+        let far = world.bounds_m.iter().fold(1.0, |far: f64, at| far.max(at.abs()));
+        let beams = laser.beams as usize;
+        let every = beams.saturating_sub(1).div_ceil(MOST_SCAN_BEAMS - 1).max(1);
+        let (rows, columns) = plan.grid()?.size();
+        let rules = plan.behaviour.rules().iter().enumerate();
+        Ok(Self {
+            format: FORMAT,
+            engine: env!("CARGO_PKG_VERSION"),
+            behaviour: plan.behaviour.name().to_owned(),
+            script_path: plan.behaviour.source().path.display().to_string(),
+            script: plan.behaviour.source().text.to_string(),
+            // Room for a robot that falls off the edge of the world.
+            unit_m: (2.0 * far / REACH).max(0.001),
+            world,
+            robot_half_m: [HALF_LENGTH_M, HALF_WIDTH_M],
+            period_s: run.period_s,
+            window_steps: WINDOW_STEPS,
+            planned_steps: plan.learning_steps(),
+            swaps: plan.swaps().map(|(step, table, ..)| Swap { step, table }).collect(),
+            actions: actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
+            grid: [rows, columns],
+            scan: ScanShape {
+                beams,
+                every,
+                kept: beams.saturating_sub(1) / every + 1,
+                max_range_m: laser.max_range_m,
+                forward_m: laser.forward_m,
+                tilt_rad: laser.tilt_deg.to_radians(),
+            },
+            rules: rules
+                .map(|(index, rule)| RuleView {
+                    name: rule.name.clone(),
+                    line: rule.line,
+                    lines: rule.text.lines().count().max(1),
+                    value: plan.behaviour.fixed_value(index),
+                })
+                .collect(),
+            settings: settings(plan),
+            seeds: Vec::new(),
+            shots: Vec::new(),
+            findings: crate::lint::read(plan).iter().map(Finding::from).collect(),
+            checked: None,
+        })
+    }
+
+    fn first_shown(&mut self, first: Option<usize>) {
+        if let Some(seed) = first.and_then(|index| self.seeds.get_mut(index)) {
+            seed.shown_first = true;
+        }
+    }
+}
+
+/// A seed takes about as much room as those before it.
+fn bytes_of_next(bytes: usize, document: &Document) -> usize {
+    bytes / document.seeds.iter().filter(|seed| seed.bytes() > 0).count().max(1)
+}
+
+fn settings(plan: &Plan) -> Vec<SettingView> {
+    let defaults = Settings::default();
+    let filters = plan.settings.filters.iter().map(|filter| {
+        let parameters: Vec<String> = filter.parameters.iter().map(|(name, value)| format!("{name} {value}")).collect();
+        SettingView {
+            name: format!("filter.{}", filter.name),
+            value: if parameters.is_empty() { "as it is".to_owned() } else { parameters.join(", ") },
+            unit: "",
+            changed: true,
+        }
+    });
+    let rows = SETTINGS.iter().map(|row| {
+        let value = (row.get)(&plan.settings);
+        let changed = value != (row.get)(&defaults);
+        let value = match value {
+            Value::Number(number) => number.to_string(),
+            Value::Flag(flag) => flag.to_string(),
+            Value::Text(text) => text,
+        };
+        SettingView { name: row.name(), value, unit: row.unit, changed }
+    });
+    let mut all: Vec<SettingView> = filters.chain(rows).collect();
+    all.sort_by_key(|setting| !setting.changed);
+    all
+}

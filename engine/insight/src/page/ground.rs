@@ -1,0 +1,121 @@
+//! The world from above, as outlines.
+
+use serde::Serialize;
+
+use crate::report::holds;
+use engine::world::scene::{Material, Shape, Solid};
+use engine::world::{Layout, Mover};
+
+/// What stands in a world.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Ground {
+    /// Name of the world.
+    pub name: String,
+    /// Least x and y, greatest x and y of all that is drawn, metres.
+    pub bounds_m: [f64; 4],
+    /// The solids, the lowest first.
+    pub solids: Vec<Outline>,
+    /// The lap that the world's author had in mind, metres.
+    pub route_m: Option<Vec<[f64; 2]>>,
+    /// What drives by itself, in the order of the world file.
+    pub movers: Vec<MoverOutline>,
+}
+
+/// What drives by itself.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MoverOutline {
+    /// Its name in the world file.
+    pub name: String,
+    /// Its solids around its own origin, x forward.
+    pub solids: Vec<Outline>,
+}
+
+/// One solid.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Outline {
+    /// `wall` stops the robot, `ground` is driven on, `glass` stops it unseen by the laser, `paint` is flat.
+    pub kind: &'static str,
+    /// Its colour, for paint and prey.
+    pub colour: [u8; 3],
+    /// Its corners, metres; none of a circle.
+    pub corners_m: Vec<[f64; 2]>,
+    /// x, y and radius of a circle, metres.
+    pub circle_m: Option<[f64; 3]>,
+}
+
+impl Ground {
+    /// The outlines of a world.
+    #[must_use]
+    pub fn new(layout: &Layout) -> Self {
+        let parts = layout.scene.parts();
+        let route_m = layout.lap.map(|lap| {
+            let route = &layout.routes[lap];
+            let back = route.points().first().filter(|_| route.closed);
+            route.points().iter().chain(back).map(|at| [milli(at.x), milli(at.y)]).collect::<Vec<_>>()
+        });
+        let starts: Vec<[f64; 2]> = layout.starts.iter().map(|start| [start.x_m, start.y_m]).collect();
+        let driven: Vec<[f64; 2]> = route_m.iter().flatten().chain(&starts).copied().collect();
+        let mut solids: Vec<&Solid> = parts.solids.iter().collect();
+        solids.sort_by(|a, b| {
+            let key = |solid: &Solid| (solid.collides, solid.bounds().1.z);
+            key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal)
+        });
+        let outline = |solid: &&Solid| Outline::new(solid, parts.materials.get(solid.material), &driven);
+        let mover = |mover: &Mover| MoverOutline {
+            name: mover.name.clone(),
+            solids: mover.solids.iter().map(|solid| outline(&solid)).collect(),
+        };
+        Self {
+            name: layout.name.clone(),
+            bounds_m: bounds(&parts.solids, &driven),
+            solids: solids.iter().map(outline).collect(),
+            route_m,
+            movers: layout.movers.iter().map(mover).collect(),
+        }
+    }
+}
+
+impl Outline {
+    fn new(solid: &Solid, material: Option<&Material>, driven: &[[f64; 2]]) -> Self {
+        let ramp = matches!(solid.shape, Shape::Ramp { .. });
+        let kind = match solid {
+            _ if !solid.collides => "paint",
+            _ if ramp || driven.iter().any(|at| holds(solid, *at)) => "ground",
+            _ if material.is_some_and(|material| !material.laser) => "glass",
+            _ => "wall",
+        };
+        let colour = material.map_or([128; 3], |material| material.colour);
+        let (x, y) = (solid.centre.x, solid.centre.y);
+        if let Shape::Cylinder { radius_m, .. } = solid.shape {
+            let circle_m = Some([milli(x), milli(y), milli(radius_m)]);
+            return Self { kind, colour, corners_m: Vec::new(), circle_m };
+        }
+        let half = solid.shape.half_extents();
+        let (sin, cos) = libm::sincos(solid.yaw_rad);
+        let corner = |(along, across): (f64, f64)| {
+            let (along, across) = (along * half.x, across * half.y);
+            [milli(x + cos * along - sin * across), milli(y + sin * along + cos * across)]
+        };
+        let corners_m = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(corner).to_vec();
+        Self { kind, colour, corners_m, circle_m: None }
+    }
+}
+
+fn bounds(solids: &[Solid], driven: &[[f64; 2]]) -> [f64; 4] {
+    let corners = solids.iter().flat_map(|solid| {
+        let (min, max) = solid.bounds();
+        [[min.x, min.y], [max.x, max.y]]
+    });
+    // Around a robot alone on an endless floor there is nothing else to show.
+    let around = driven.iter().flat_map(|at| [[at[0] - 1.0, at[1] - 1.0], [at[0] + 1.0, at[1] + 1.0]]);
+    let mut all = [f64::MAX, f64::MAX, f64::MIN, f64::MIN];
+    for [x, y] in corners.chain(around) {
+        all = [all[0].min(x), all[1].min(y), all[2].max(x), all[3].max(y)];
+    }
+    if all[0] > all[2] { [-1.0, -1.0, 1.0, 1.0] } else { all.map(milli) }
+}
+
+/// To the millimetre, so that the text stays short.
+fn milli(metres: f64) -> f64 {
+    (metres * 1000.0).round() / 1000.0
+}

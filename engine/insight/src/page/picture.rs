@@ -1,0 +1,44 @@
+//! Pictures small enough to stand in a page by the dozen, as addresses that hold them.
+
+use filter_api::Format;
+use image::codecs::jpeg::JpegEncoder;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ExtendedColorType, ImageEncoder, ImageResult};
+
+use crate::report::base64;
+use engine::diagnostic::{Diagnostic, Kind, Result};
+
+/// The quality of camera images: pixel noise would make them ten times as large without loss.
+const QUALITY: u8 = 82;
+
+/// A picture as a `data:` address: masks as they are (PNG), camera and grey images almost so (JPEG).
+///
+/// # Errors
+/// If the pixels do not fit the size.
+pub(super) fn data_address(pixels: &[u8], size_px: (usize, usize), format: Format) -> Result<String> {
+    let (width, height) = (size_px.0 as u32, size_px.1 as u32);
+    if pixels.len() != size_px.0 * size_px.1 * format.channels() {
+        return Err(failed("its pixels do not fit its size"));
+    }
+    let mut bytes = Vec::new();
+    let (written, kind): (ImageResult<()>, &str) = match format {
+        Format::Mask => {
+            let png = PngEncoder::new_with_quality(&mut bytes, CompressionType::Default, FilterType::NoFilter);
+            (png.write_image(pixels, width, height, ExtendedColorType::L8), "png")
+        }
+        Format::Grey => {
+            let jpeg = JpegEncoder::new_with_quality(&mut bytes, QUALITY);
+            (jpeg.write_image(pixels, width, height, ExtendedColorType::L8), "jpeg")
+        }
+        Format::Rgb => {
+            let jpeg = JpegEncoder::new_with_quality(&mut bytes, QUALITY);
+            (jpeg.write_image(pixels, width, height, ExtendedColorType::Rgb8), "jpeg")
+        }
+    };
+    written.map_err(|error| failed(&error.to_string()))?;
+    Ok(format!("data:image/{kind};base64,{}", base64(&bytes)))
+}
+
+fn failed(reason: &str) -> Box<Diagnostic> {
+    Box::new(Diagnostic::new(Kind::Disk, "E-PICTURE", format!("cannot draw a frame: {reason}")))
+}

@@ -1,0 +1,154 @@
+//! One seed as the page shows it: curve, policy, figures, and its steps.
+
+use serde::Serialize;
+
+use super::track::Source;
+use super::{Moments, ScanShape, Shot, Track};
+use engine::diagnostic::Result;
+use engine::experiment::{Ledger, Phase, Plan, Tally, TestFigures, learned_at};
+use engine::learner::Policy;
+
+/// The most states of a seed in a document.
+const MOST_STATES: usize = 256;
+
+/// What is known of a seed.
+#[derive(Debug, Clone, Copy)]
+pub struct SeedData<'a> {
+    /// The seed.
+    pub seed: u64,
+    /// What was counted while learning; none for a behaviour that combines policies.
+    pub tally: Option<&'a Tally>,
+    /// What was learned.
+    pub policy: Option<&'a Policy>,
+    /// The test's figures, once it is done.
+    pub test: Option<&'a TestFigures>,
+    /// Steps of learning.
+    pub learning: &'a Ledger,
+    /// Steps of the test.
+    pub tested: &'a Ledger,
+}
+
+/// One seed.
+#[derive(Debug, Clone, Serialize)]
+pub struct SeedView {
+    /// The seed.
+    pub seed: u64,
+    /// Whether the page begins with it.
+    pub shown_first: bool,
+    /// The first step from which four windows have a reinforcement of -1 or better.
+    pub learned_at: Option<u64>,
+    /// Reinforcement of each window.
+    pub curve: Vec<f64>,
+    /// By window, what each rule added; nothing of a seed without steps.
+    pub by_rule: Vec<Vec<f64>>,
+    /// The test's figures.
+    pub test: Option<TestFigures>,
+    /// How many states were met.
+    pub states_met: usize,
+    /// The states that were met, by number; of very many, the most visited.
+    pub states: Vec<StateRow>,
+    /// Steps of learning; null if this document leaves them out.
+    pub learning: Option<Track>,
+    /// Steps of the test; null if this document leaves them out, or the test is not done.
+    pub tested: Option<Track>,
+}
+
+/// One state of the learned table.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StateRow {
+    /// Its number.
+    pub state: usize,
+    /// Its cells, `1` for filled, row by row from the top left.
+    pub cells: String,
+    /// How often it was visited.
+    pub visits: u64,
+    /// The best action.
+    pub best: usize,
+    /// Its value.
+    pub value: f64,
+    /// The value of each action; nothing of a seed without steps.
+    pub values: Vec<f64>,
+}
+
+impl SeedView {
+    /// A seed without its steps.
+    ///
+    /// # Errors
+    /// If the grid cannot be made.
+    pub fn new(plan: &Plan, data: &SeedData<'_>) -> Result<Self> {
+        let curve = data.tally.map_or_else(Vec::new, Tally::curve);
+        let brings_steps = !data.learning.is_empty();
+        let windows = 0..if brings_steps { curve.len() } else { 0 };
+        Ok(Self {
+            seed: data.seed,
+            shown_first: false,
+            learned_at: learned_at(&curve),
+            by_rule: data.tally.map_or_else(Vec::new, |tally| windows.map(|at| by_rule(plan, tally, at)).collect()),
+            curve,
+            test: data.test.cloned(),
+            states_met: data.policy.map_or(0, |policy| policy.rows().iter().flatten().count()),
+            states: data.policy.map_or(Ok(Vec::new()), |policy| states(plan, policy, brings_steps))?,
+            learning: None,
+            tested: None,
+        })
+    }
+
+    /// Adds the steps of both phases; the moments with pictures come back.
+    ///
+    /// # Errors
+    /// If a recorded step cannot be played again.
+    pub fn add_tracks(
+        &mut self,
+        plan: &Plan,
+        data: &SeedData<'_>,
+        unit_m: f64,
+        scan: ScanShape,
+        moments: Moments,
+    ) -> Result<Vec<Shot>> {
+        let source = |phase, ledger| Source { plan, seed: data.seed, phase, ledger, unit_m, scan };
+        let mut shots = Vec::new();
+        if !data.learning.is_empty() {
+            let (track, made) = source(Phase::Learning, data.learning).track(moments)?;
+            self.learning = Some(track);
+            shots.extend(made);
+        }
+        if !data.tested.is_empty() {
+            let (track, made) = source(Phase::Test, data.tested).track(moments)?;
+            self.tested = Some(track);
+            shots.extend(made);
+        }
+        Ok(shots)
+    }
+
+    /// Size of the steps in the page, bytes, about.
+    pub(super) fn bytes(&self) -> usize {
+        [&self.learning, &self.tested].into_iter().flatten().map(Track::bytes).sum()
+    }
+
+    /// What makes one seed worth more of a look than another: its failures.
+    pub(super) fn badness(&self) -> u64 {
+        self.test.as_ref().map_or(0, |test| (test.failures_per_1000 * 1000.0) as u64)
+    }
+}
+
+/// What the plan's own rules added in a window; rules that only earlier legs had come after them.
+fn by_rule(plan: &Plan, tally: &Tally, window: usize) -> Vec<f64> {
+    tally.by_rule(window).iter().take(plan.behaviour.rules().len()).copied().collect()
+}
+
+fn states(plan: &Plan, policy: &Policy, with_values: bool) -> Result<Vec<StateRow>> {
+    let grid = plan.grid()?;
+    let mut met: Vec<(usize, u64)> =
+        policy.rows().iter().enumerate().filter_map(|(state, row)| Some((state, row.as_ref()?.visits))).collect();
+    met.sort_by_key(|(state, visits)| (std::cmp::Reverse(*visits), *state));
+    met.truncate(MOST_STATES);
+    met.sort_unstable();
+    let rounded = |value: f64| (value * 1e4).round() / 1e4;
+    let rows = met.into_iter().filter_map(|(state, visits)| {
+        let (row, (best, value)) = (policy.rows().get(state)?.as_ref()?, policy.best(state)?);
+        let cells = grid.cells(state).iter().map(|filled| if *filled { '1' } else { '0' }).collect();
+        let values = if with_values { row.values.iter().copied().map(rounded).collect() } else { Vec::new() };
+        Some(StateRow { state, cells, visits, best, value: rounded(value), values })
+    });
+    Ok(rows.collect())
+}

@@ -1,0 +1,121 @@
+//! One moment in pictures: what the camera saw at the end of a step, what each filter and the grid made of it, and why the
+//! step was rewarded.
+
+use serde::Serialize;
+
+use super::picture::data_address;
+use engine::diagnostic::Result;
+use engine::experiment::{Ledger, Phase, Plan, Playback, Snapshot, StepReasons};
+use filter_api::Format;
+
+/// One moment.
+#[derive(Debug, Clone, Serialize)]
+pub struct Shot {
+    /// The seed.
+    pub seed: u64,
+    /// `learning` or `test`.
+    pub phase: &'static str,
+    /// The step's number, from 0; the pictures are those at its end, before any recovery.
+    pub step: usize,
+    /// Pixels in a row of every picture, and rows.
+    pub size_px: [usize; 2],
+    /// The camera's image, then each filter's, in order.
+    pub stages: Vec<StagePicture>,
+    /// Share of foreground of each cell, row by row from the top left, 0 to 1.
+    pub shares: Vec<f32>,
+    /// Whether each cell has enough foreground.
+    pub occupied: Vec<bool>,
+    /// Whether each cell counts as filled in the state.
+    pub filled: Vec<bool>,
+    /// The state.
+    pub state: usize,
+    /// Why the step was rewarded as it was.
+    pub reasons: StepReasons,
+    /// Every range of the laser, millimetres; only on demand.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scan_mm: Option<Vec<u32>>,
+}
+
+/// One picture.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct StagePicture {
+    /// `camera`, or the filter's name.
+    pub name: String,
+    /// A `data:` address.
+    pub picture: String,
+}
+
+/// Makes shots of one recorded phase.
+pub struct ShotMaker<'a> {
+    /// The plan.
+    pub plan: &'a Plan,
+    /// The seed.
+    pub seed: u64,
+    /// The phase.
+    pub phase: Phase,
+}
+
+impl ShotMaker<'_> {
+    /// The moment that a playback has come to, with the reasons of the step that led there.
+    ///
+    /// # Errors
+    /// If a picture cannot be encoded.
+    pub fn shot(&self, playback: &Playback<'_>, reasons: StepReasons) -> Result<Shot> {
+        let cycle = playback.cycle();
+        let Snapshot { image, grid: _, shares, occupied, filled, state, .. } = Snapshot::of(cycle);
+        let size_px = (image.width_px, image.height_px);
+        let camera = data_address(&image.pixels, size_px, Format::Rgb)?;
+        let mut stages = vec![StagePicture { name: "camera".to_owned(), picture: camera }];
+        for (filter, pixels) in cycle.stages() {
+            let picture = data_address(pixels, size_px, filter.writes)?;
+            stages.push(StagePicture { name: filter.name.to_owned(), picture });
+        }
+        let thousandths = |share: f32| (share * 1000.0).round() / 1000.0;
+        Ok(Shot {
+            seed: self.seed,
+            phase: name(self.phase),
+            step: reasons.step,
+            size_px: [size_px.0, size_px.1],
+            stages,
+            shares: shares.into_iter().map(thousandths).collect(),
+            occupied,
+            filled,
+            state,
+            reasons,
+            scan_mm: None,
+        })
+    }
+}
+
+impl Shot {
+    /// Its size in the page, bytes, about.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        1500 + self.stages.iter().map(|stage| stage.picture.len()).sum::<usize>()
+    }
+}
+
+/// One moment of a recorded phase, with the whole scan; nothing if there is no such step.
+///
+/// # Errors
+/// If the phase cannot be played.
+pub fn shot_of(plan: &Plan, seed: u64, phase: Phase, ledger: &Ledger, step: usize) -> Result<Option<Shot>> {
+    if step >= ledger.len() {
+        return Ok(None);
+    }
+    let mut playback = Playback::new(plan, seed, phase, ledger)?;
+    playback.seek(step)?;
+    let Some(reasons) = StepReasons::of_next(&mut playback)? else { return Ok(None) };
+    let ranges_m = &playback.cycle().observation().scan.ranges_m;
+    let scan_mm = ranges_m.iter().map(|range_m| (range_m * 1000.0).round() as u32).collect();
+    let shot = ShotMaker { plan, seed, phase }.shot(&playback, reasons)?;
+    Ok(Some(Shot { scan_mm: Some(scan_mm), ..shot }))
+}
+
+/// The phase's name in the contract.
+pub(super) fn name(phase: Phase) -> &'static str {
+    match phase {
+        Phase::Learning => "learning",
+        Phase::Test => "test",
+    }
+}

@@ -1,0 +1,69 @@
+//! Recordings for the viewers that people have: a run as an MCAP file in Foxglove's schemas, which Rerun reads too.
+//!
+//! | topic | schema | what |
+//! |---|---|---|
+//! | `/tf` | foxglove.FrameTransform | the robot in the world |
+//! | `/world` | foxglove.SceneUpdate | walls and obstacles, once for each phase |
+//! | `/scan` | foxglove.LaserScan | ranges of all beams, metres, in the laser's own frame |
+//! | `/camera`, `/mask` | foxglove.CompressedImage | the camera's image and what the filters made of it, PNG |
+//! | `/prey` | foxglove.PoseInFrame | the prey, where there is one |
+//! | `/step` | JSON | state, action, reward by rule, recovery |
+//!
+//! Time is the robot's: step times period, the test after learning. Everything comes back from the ledger by playing it.
+
+use std::path::Path;
+
+use engine::diagnostic::{Diagnostic, Kind, Result};
+use engine::experiment::{Ledger, Phase, Plan};
+
+#[cfg(feature = "mcap")]
+mod scene;
+#[cfg(feature = "mcap")]
+mod writer;
+
+/// What was recorded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Recording {
+    /// Steps of learning and of the test.
+    pub steps: u64,
+    /// Images of the camera.
+    pub images: u64,
+    /// Size of the file.
+    pub bytes: u64,
+}
+
+/// Writes the phases of one seed, one after the other, with an image every `image_every` steps.
+///
+/// # Errors
+/// If the file cannot be written, or a phase cannot be played.
+#[cfg(feature = "mcap")]
+pub fn record(plan: &Plan, seed: u64, phases: &[(Phase, &Ledger)], image_every: u64, path: &Path) -> Result<Recording> {
+    writer::record(plan, seed, phases, image_every, path)
+}
+
+/// Checks that recording can begin: that this program can record, and that the folder is there.
+///
+/// # Errors
+/// If not: what to do.
+pub fn check(path: &Path) -> Result<()> {
+    if cfg!(not(feature = "mcap")) {
+        let error = Diagnostic::new(Kind::Usage, "E-RECORD-BUILD", "this engine was built without recording");
+        return error.help("build it with: cargo build --release --features mcap").into();
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if folder.is_dir() {
+        return Ok(());
+    }
+    let missing = std::io::Error::from(std::io::ErrorKind::NotFound);
+    Err(Box::new(Diagnostic::disk("record into the folder", folder, &missing)))
+}
+
+/// Writes nothing: this program was built without recording.
+///
+/// # Errors
+/// Always; how to build it with recording.
+#[cfg(not(feature = "mcap"))]
+pub fn record(_: &Plan, _: u64, _: &[(Phase, &Ledger)], _: u64, path: &Path) -> Result<Recording> {
+    check(path)?;
+    Ok(Recording { steps: 0, images: 0, bytes: 0 })
+}

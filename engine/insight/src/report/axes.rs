@@ -1,0 +1,232 @@
+//! Axes with ticks at round numbers, drawn by plotters, and the map from values to places.
+
+use std::rc::Rc;
+
+use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
+use plotters::prelude::*;
+
+use super::canvas::{Ink, Spot, UNITS_PER_PX, units};
+use super::failed;
+use super::glyphs;
+use super::sheet::{FRAME, GRID, LABEL_PX, QUIET, SMALL_PX, Sheet, TEXT};
+use engine::diagnostic::Result;
+
+/// Pixels under a plot for its labels.
+pub(super) const BELOW_PX: f64 = 54.0;
+
+/// One axis.
+#[derive(Debug, Clone)]
+pub(super) struct Axis {
+    /// Quantity and unit.
+    pub(super) title: String,
+    /// The least value shown.
+    pub(super) low: f64,
+    /// The greatest value shown.
+    pub(super) high: f64,
+    /// Pixels beside the plot for its labels.
+    pub(super) room_px: f64,
+    /// About how many ticks there is room for.
+    pub(super) ticks: usize,
+}
+
+/// A plot: values on it and where they are on the sheet.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Plot {
+    /// Top left of the plot.
+    pub(super) min: Spot,
+    /// Bottom right of the plot.
+    pub(super) max: Spot,
+    x: (f64, f64),
+    y: (f64, f64),
+}
+
+impl Plot {
+    /// The place of a value; values far outside stay near enough to the plot to be counted.
+    pub(super) fn at(&self, x: f64, y: f64) -> Spot {
+        (place(x, self.x, (self.min.0, self.max.0)), place(y, self.y, (self.max.1, self.min.1)))
+    }
+}
+
+fn place(value: f64, (low, high): (f64, f64), (from, to): (i32, i32)) -> i32 {
+    let share = ((value - low) / (high - low)).clamp(-4.0, 5.0);
+    (f64::from(from) + share * f64::from(to - from)).round() as i32
+}
+
+/// A range that holds all finite values and is never empty; without values it is 0 to 1.
+pub(super) fn range(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
+    let finite = values.into_iter().filter(|value| value.is_finite());
+    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+    // Wider than any world or reward; keeps differences finite.
+    let (low, high) = (low.max(-1e300), high.min(1e300));
+    if low > high {
+        (0.0, 1.0)
+    } else if high - low <= high.abs().max(1e-6) * 1e-9 {
+        let around = (high.abs() * 0.1).max(0.5);
+        (low - around, high + around)
+    } else {
+        (low, high)
+    }
+}
+
+/// The round step, 1, 2 or 5 times a power of ten, that cuts `span` into at most `parts`, and its decimals.
+fn round_step(span: f64, parts: usize) -> (f64, usize) {
+    let least = span / parts.max(1) as f64;
+    let (mut power, mut decimals) = (1.0_f64, 0_usize);
+    while power < least && power < 1e300 {
+        power *= 10.0;
+    }
+    let mut down = 1.0;
+    while power / down / 10.0 >= least && decimals < 12 {
+        if power > 1.0 {
+            power /= 10.0;
+        } else {
+            down *= 10.0;
+            decimals += 1;
+        }
+    }
+    // `power / down` is now the least power of ten that is enough.
+    for (part, deeper) in [(5.0, 1), (2.0, 1)] {
+        if power / down / part >= least {
+            return (power / down / part, if power > 1.0 { 0 } else { decimals + deeper });
+        }
+    }
+    (power / down, decimals)
+}
+
+/// Round values from `low` to `high`, and the decimals to write them with.
+pub(super) fn ticks(low: f64, high: f64, count: usize) -> (Vec<f64>, usize) {
+    let (step, decimals) = round_step(high - low, count);
+    let first = (low / step - 1e-9).ceil();
+    let ticks =
+        (0..=count + 1).map(|index| (first + index as f64) * step).take_while(|tick| *tick <= high + step * 1e-9);
+    (ticks.collect(), decimals)
+}
+
+/// A number as people read it: groups of three digits, a true minus sign.
+pub(super) fn number(value: f64, decimals: usize) -> String {
+    if value.abs() >= 1e9 {
+        return format!("{value:.1e}").replace('-', "−");
+    }
+    let plain = format!("{:.decimals$}", value.abs());
+    let (whole, part) = plain.split_at(plain.find('.').unwrap_or(plain.len()));
+    let mut out = String::new();
+    if value < 0.0 && plain.bytes().any(|digit| (b'1'..=b'9').contains(&digit)) {
+        out.push('−');
+    }
+    for (index, digit) in whole.char_indices() {
+        // Four digits are still read at a glance.
+        if index > 0 && whole.len() > 4 && (whole.len() - index) % 3 == 0 {
+            out.push('\u{2009}');
+        }
+        out.push(digit);
+    }
+    out + part
+}
+
+/// The colour as plotters takes it.
+fn colour(ink: Ink) -> RGBColor {
+    let [red, green, blue] = ink.rgb;
+    RGBColor(red, green, blue)
+}
+
+/// An axis as plotters reads it. Its own axes choose ticks with the logarithm of the platform, which may differ.
+struct Scale {
+    low: f64,
+    high: f64,
+    ticks: Vec<f64>,
+    decimals: usize,
+}
+
+impl Scale {
+    fn new(axis: &Axis) -> Self {
+        let (ticks, decimals) = ticks(axis.low, axis.high, axis.ticks);
+        Self { low: axis.low, high: axis.high, ticks, decimals }
+    }
+}
+
+impl Ranged for Scale {
+    type FormatOption = NoDefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
+        place(*value, (self.low, self.high), limit)
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
+        if hint.weight().allow_light_points() { Vec::new() } else { self.ticks.clone() }
+    }
+
+    fn range(&self) -> std::ops::Range<f64> {
+        self.low..self.high
+    }
+}
+
+impl ValueFormatter<f64> for Scale {
+    fn format_ext(&self, value: &f64) -> String {
+        number(*value, self.decimals)
+    }
+}
+
+/// Draws axes and grid around the rectangle from `min` to `max`.
+///
+/// # Errors
+/// If plotters cannot draw.
+pub(super) fn axes(sheet: &Sheet, min: Spot, max: Spot, x: &Axis, y: &Axis) -> Result<Plot> {
+    let (left, below) = (units(y.room_px), units(x.room_px));
+    let root = DrawingArea::from(&Rc::clone(&sheet.canvas));
+    let (width, height) = root.dim_in_pixel();
+    // plotters ends a plot one unit before the border of its area.
+    let area = root.margin(min.1, height as i32 - max.1 - below - 1, min.0 - left, width as i32 - max.0 - 1);
+    let mut chart = ChartBuilder::on(&area)
+        .x_label_area_size(below)
+        .y_label_area_size(left)
+        .build_cartesian_2d(Scale::new(x), Scale::new(y))
+        .map_err(|error| failed(&error.to_string()))?;
+    let text = |em_px: f64, ink| glyphs::font(units(em_px), false).color(&colour(ink));
+    chart
+        .configure_mesh()
+        .axis_style(colour(FRAME).stroke_width(UNITS_PER_PX as u32))
+        .bold_line_style(colour(GRID).stroke_width(UNITS_PER_PX as u32))
+        .light_line_style(TRANSPARENT)
+        .set_all_tick_mark_size(units(5.0))
+        .label_style(text(SMALL_PX, QUIET))
+        .axis_desc_style(text(LABEL_PX, TEXT))
+        .x_desc(x.title.as_str())
+        .y_desc(y.title.as_str())
+        .draw()
+        .map_err(|error| failed(&error.to_string()))?;
+    Ok(Plot { min, max, x: (x.low, x.high), y: (y.low, y.high) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_within_the_range() {
+        assert_eq!(ticks(-20.3, 0.0, 5), (vec![-20.0, -15.0, -10.0, -5.0, 0.0], 0));
+        assert_eq!(ticks(0.0, 40_000.0, 8).0, [0.0, 5e3, 1e4, 1.5e4, 2e4, 2.5e4, 3e4, 3.5e4, 4e4]);
+        let (small, decimals) = ticks(0.1, 0.42, 4);
+        assert_eq!(decimals, 1);
+        assert!(small.iter().zip([0.1, 0.2, 0.3, 0.4]).all(|(a, b)| (a - b).abs() < 1e-12), "{small:?}");
+        assert_eq!(ticks(0.0, 0.0101, 2), (vec![0.0, 0.01], 2));
+        assert_eq!(ticks(0.0, 0.0101, 3).1, 3);
+    }
+
+    #[test]
+    fn numbers_have_groups_and_a_true_minus() {
+        assert_eq!(number(-12_500.0, 0), "−12\u{2009}500");
+        assert_eq!(number(2500.0, 0), "2500");
+        assert_eq!(number(-0.001, 1), "0.0");
+        assert_eq!(number(1.25, 2), "1.25");
+    }
+
+    #[test]
+    fn a_range_is_never_empty() {
+        assert_eq!(range([]), (0.0, 1.0));
+        assert_eq!(range([f64::NAN]), (0.0, 1.0));
+        assert_eq!(range([-3.0, -3.0]), (-3.5, -2.5));
+        let (low, high) = range([1e308, -1e308]);
+        assert!((high - low).is_finite());
+    }
+}

@@ -1,0 +1,216 @@
+//! One image seen through the pipeline: the image, what each filter made of it, the grid and its state.
+
+use super::canvas::{Ink, Spot, units};
+use super::sheet::{
+    BELOW_TITLE_PX, BLUE, FRAME, LABEL_PX, MARGIN_PX, PAPER, QUIET, SKY, SMALL_PX, Sheet, TEXT, centred, spot, words,
+};
+use super::{Picture, failed};
+use engine::diagnostic::Result;
+use engine::experiment::Snapshot;
+use engine::sensors::observation::Image;
+use filter_api::Format;
+
+const GAP_PX: f64 = 28.0;
+/// From one panel to the next, at least; the words around a panel need this much.
+const LEAST_APART_PX: f64 = 344.0;
+/// Room for one panel, pixels; a larger image is thinned out.
+const ROOM_PX: usize = 640;
+
+/// What the frame picture shows.
+#[derive(Debug, Clone, Copy)]
+pub struct FrameData<'a> {
+    /// The heading.
+    pub title: &'a str,
+    /// Pixels in a row of every panel.
+    pub width_px: usize,
+    /// Rows of pixels of every panel.
+    pub height_px: usize,
+    /// The pictures before the grid, left to right: at least one.
+    pub panels: &'a [FramePanel<'a>],
+    /// Rows of the grid.
+    pub rows: usize,
+    /// Columns of the grid.
+    pub columns: usize,
+    /// Share of foreground in each cell, row by row from the top left, 0 to 1.
+    pub shares: &'a [f32],
+    /// Whether each cell has enough foreground.
+    pub occupied: &'a [bool],
+    /// Whether each cell counts as occupied in the state, by its foreground or by the column rule.
+    pub filled: &'a [bool],
+    /// The state's number.
+    pub state: usize,
+}
+
+/// Draws a frame that a test kept: the camera's image, the mask, the grid.
+///
+/// # Errors
+/// As [`frame()`].
+pub fn snapshot_frame(title: &str, snapshot: &Snapshot) -> Result<Picture> {
+    frame(&FrameData {
+        title,
+        width_px: snapshot.image.width_px,
+        height_px: snapshot.image.height_px,
+        panels: &[FramePanel::image("camera", &snapshot.image), FramePanel::mask(&snapshot.mask)],
+        rows: snapshot.grid.0,
+        columns: snapshot.grid.1,
+        shares: &snapshot.shares,
+        occupied: &snapshot.occupied,
+        filled: &snapshot.filled,
+        state: snapshot.state,
+    })
+}
+
+/// One picture of the frame.
+#[derive(Debug, Clone, Copy)]
+pub struct FramePanel<'a> {
+    /// The words above it.
+    pub name: &'a str,
+    /// What one pixel holds.
+    pub format: Format,
+    /// Row by row from the top left, as many as the frame says.
+    pub pixels: &'a [u8],
+}
+
+impl<'a> FramePanel<'a> {
+    /// A colour image under a name.
+    #[must_use]
+    pub fn image(name: &'a str, image: &'a Image) -> Self {
+        Self { name, format: Format::Rgb, pixels: &image.pixels }
+    }
+
+    /// The mask that a chain of filters made, 0 or 255.
+    #[must_use]
+    pub fn mask(pixels: &'a [u8]) -> Self {
+        Self { name: "filtered", format: Format::Mask, pixels }
+    }
+
+    /// What is written below it.
+    fn caption(&self, width: usize, height: usize) -> String {
+        match self.format {
+            Format::Rgb => format!("{width} × {height} pixels"),
+            Format::Grey => "grey levels".to_owned(),
+            Format::Mask => {
+                let set = self.pixels.iter().filter(|pixel| **pixel > 0).count();
+                format!("{:.1} % foreground", set as f64 / self.pixels.len() as f64 * 100.0)
+            }
+        }
+    }
+
+    fn colour(&self, pixel: usize) -> [u8; 3] {
+        match self.format {
+            Format::Rgb => [self.pixels[3 * pixel], self.pixels[3 * pixel + 1], self.pixels[3 * pixel + 2]],
+            Format::Grey | Format::Mask => [self.pixels[pixel]; 3],
+        }
+    }
+}
+
+/// Draws the panels and the grid side by side, pixels enlarged by a whole factor.
+///
+/// # Errors
+/// If the parts do not fit each other, or the picture cannot be encoded.
+pub fn frame(data: &FrameData<'_>) -> Result<Picture> {
+    check(data)?;
+    let (width, height) = (data.width_px, data.height_px);
+    let keep = width.max(height).div_ceil(ROOM_PX);
+    let (columns, rows) = (width.div_ceil(keep), height.div_ceil(keep));
+    let zoom = (400 / columns).min(480 / rows).max(1);
+    let (panel_width, panel_height) = ((columns * zoom) as f64, (rows * zoom) as f64);
+    let apart = (panel_width + GAP_PX).max(LEAST_APART_PX);
+    let top = BELOW_TITLE_PX + 30.0;
+    let panels = data.panels.len();
+    let sheet_width = 2.0 * MARGIN_PX + (panels + 1) as f64 * apart - GAP_PX;
+    let sheet = Sheet::new(sheet_width, top + panel_height + 74.0, data.title);
+    let panel = |index: usize| {
+        let left = MARGIN_PX + index as f64 * apart + ((apart - GAP_PX - panel_width) / 2.0).floor();
+        let min = spot(left, top);
+        (min, (min.0 + units(panel_width), min.1 + units(panel_height)))
+    };
+    for (index, shown) in data.panels.iter().enumerate() {
+        let (min, max) = panel(index);
+        title(&sheet, min, max, shown.name, &shown.caption(width, height));
+        let rgb = thinned(rows, columns, |row, column| shown.colour(row * keep * width + column * keep));
+        sheet.image(min, max, columns, rows, rgb);
+        sheet.border(min, max, FRAME);
+    }
+    let (min, max) = panel(panels);
+    title(&sheet, min, max, &format!("grid {} × {}: state {}", data.rows, data.columns, data.state), &digits(data));
+    grid(&sheet, min, max, data);
+    sheet.finish()
+}
+
+fn check(data: &FrameData<'_>) -> Result<()> {
+    let (width, height) = (data.width_px, data.height_px);
+    let cells = data.rows * data.columns;
+    let fits = |panel: &FramePanel<'_>| panel.pixels.len() == width * height * panel.format.channels();
+    if width * height == 0 || data.panels.is_empty() || !data.panels.iter().all(fits) {
+        return Err(failed("a panel does not have the size of the frame"));
+    }
+    if cells == 0 || [data.shares.len(), data.occupied.len(), data.filled.len()] != [cells; 3] {
+        return Err(failed("the grid does not have rows times columns cells"));
+    }
+    Ok(())
+}
+
+fn thinned(rows: usize, columns: usize, pixel: impl Fn(usize, usize) -> [u8; 3]) -> Vec<u8> {
+    let pixel = &pixel;
+    (0..rows).flat_map(|row| (0..columns).flat_map(move |column| pixel(row, column))).collect()
+}
+
+fn title(sheet: &Sheet, min: Spot, max: Spot, name: &str, below: &str) {
+    let middle = (min.0 + max.0) / 2;
+    sheet.text(centred(words(name, (middle, min.1 - units(18.0)), LABEL_PX, TEXT)));
+    sheet.text(centred(words(below, (middle, max.1 + units(24.0)), SMALL_PX, QUIET)));
+}
+
+/// What the state counts under the column rule.
+fn digits(data: &FrameData<'_>) -> String {
+    let filled = |column: usize| (0..data.rows).filter(|row| data.filled[row * data.columns + column]).count();
+    let counts: Vec<String> = (0..data.columns).map(|column| filled(column).to_string()).collect();
+    format!("filled cells in each column: {}", counts.join(" "))
+}
+
+fn grid(sheet: &Sheet, min: Spot, max: Spot, data: &FrameData<'_>) {
+    let along = |index: usize, count: usize, low: i32, high: i32| low + (high - low) * index as i32 / count as i32;
+    let x = |column: usize| along(column, data.columns, min.0, max.0);
+    let y = |row: usize| along(row, data.rows, min.1, max.1);
+    let small = (x(1) - x(0)).min(2 * (y(1) - y(0))) < units(52.0);
+    for row in 0..data.rows {
+        for column in 0..data.columns {
+            let cell = row * data.columns + column;
+            let (from, to) = ((x(column), y(row)), (x(column + 1), y(row + 1)));
+            let ink = cell_fill(sheet, from, to, data.occupied[cell], data.filled[cell]);
+            if !small {
+                let share = format!("{:.1} %", data.shares[cell] * 100.0);
+                let middle = ((from.0 + to.0) / 2, (from.1 + to.1) / 2);
+                sheet.text(centred(words(&share, middle, LABEL_PX, ink)));
+            }
+            sheet.border(from, to, FRAME);
+        }
+    }
+}
+
+/// Fills a cell and gives the colour for words on it.
+fn cell_fill(sheet: &Sheet, from: Spot, to: Spot, occupied: bool, filled: bool) -> Ink {
+    if occupied {
+        sheet.rect(from, to, BLUE);
+        PAPER
+    } else if filled {
+        sheet.rect(from, to, SKY.towards(PAPER, 0.72));
+        hatch(sheet, from, to, SKY.towards(PAPER, 0.3));
+        TEXT
+    } else {
+        sheet.rect(from, to, PAPER);
+        QUIET
+    }
+}
+
+/// Slanted lines within a rectangle.
+fn hatch(sheet: &Sheet, from: Spot, to: Spot, ink: Ink) {
+    let (width, height) = (to.0 - from.0, to.1 - from.1);
+    let mut start = units(10.0);
+    while start < width + height {
+        let (low, high) = ((start - height).max(0), start.min(width));
+        sheet.line(vec![(from.0 + low, from.1 + start - low), (from.0 + high, from.1 + start - high)], 1.25, ink);
+        start += units(12.0);
+    }
+}

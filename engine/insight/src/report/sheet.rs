@@ -1,0 +1,163 @@
+//! The paper that every picture is drawn on: colours, sizes of text, and a few strokes.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use super::canvas::{Align, Canvas, Ink, Mark, Spot, Text, units};
+use super::{Picture, glyphs, raster, vector};
+use engine::diagnostic::Result;
+
+pub(super) const PAPER: Ink = Ink::hex(0xffffff);
+pub(super) const TEXT: Ink = Ink::hex(0x1f2328);
+pub(super) const QUIET: Ink = Ink::hex(0x57606a);
+pub(super) const GRID: Ink = Ink::hex(0xe7e9ec);
+pub(super) const FRAME: Ink = Ink::hex(0x8c959f);
+// From the palette of Okabe and Ito, which people with any colour vision can tell apart.
+pub(super) const BLUE: Ink = Ink::hex(0x0072b2);
+pub(super) const SKY: Ink = Ink::hex(0x56b4e9);
+pub(super) const VERMILION: Ink = Ink::hex(0xd55e00);
+
+/// Em of a picture's title, pixels.
+pub(super) const TITLE_PX: f64 = 22.0;
+/// Em of the title of a panel or an axis, pixels.
+pub(super) const LABEL_PX: f64 = 16.0;
+/// Em of ticks and legends, pixels.
+pub(super) const SMALL_PX: f64 = 14.5;
+/// Empty border around a picture, pixels.
+pub(super) const MARGIN_PX: f64 = 28.0;
+/// Where the content below the title begins, pixels from the top.
+pub(super) const BELOW_TITLE_PX: f64 = 68.0;
+
+/// A place in pixels from the top left.
+pub(super) fn spot(x_px: f64, y_px: f64) -> Spot {
+    (units(x_px), units(y_px))
+}
+
+/// A picture in the making.
+pub(super) struct Sheet {
+    pub(super) canvas: Rc<RefCell<Canvas>>,
+    title: String,
+    pub(super) height_px: f64,
+}
+
+impl Sheet {
+    /// White paper with a title.
+    pub(super) fn new(width_px: f64, height_px: f64, title: &str) -> Self {
+        let canvas = Canvas::new(width_px.ceil() as u32, height_px.ceil() as u32);
+        let sheet = Self { canvas: Rc::new(RefCell::new(canvas)), title: title.to_owned(), height_px };
+        sheet.rect(spot(0.0, 0.0), spot(width_px.ceil(), height_px.ceil()), PAPER);
+        let mut text = words(title, spot(MARGIN_PX, MARGIN_PX), TITLE_PX, TEXT);
+        (text.bold, text.across) = (true, Align::Start);
+        sheet.text(fitted(text, units(width_px - 2.0 * MARGIN_PX)));
+        sheet
+    }
+
+    /// The finished picture.
+    pub(super) fn finish(self) -> Result<Picture> {
+        let canvas = self.canvas.borrow();
+        Ok(Picture { svg: vector::svg(&canvas, &self.title)?, png: raster::png(&canvas)? })
+    }
+
+    fn push(&self, mark: Mark) {
+        self.canvas.borrow_mut().marks.push(mark);
+    }
+
+    pub(super) fn rect(&self, min: Spot, max: Spot, ink: Ink) {
+        self.push(Mark::Rect { min, max, ink });
+    }
+
+    /// The border of a rectangle, one pixel wide, on whole pixels.
+    pub(super) fn border(&self, min: Spot, max: Spot, ink: Ink) {
+        let corners = [min, (max.0, min.1), max, (min.0, max.1), min];
+        for side in corners.windows(2) {
+            self.line(side.to_vec(), 1.0, ink);
+        }
+    }
+
+    pub(super) fn area(&self, points: Vec<Spot>, ink: Ink) {
+        if points.len() > 2 {
+            self.push(Mark::Area { points, ink });
+        }
+    }
+
+    pub(super) fn line(&self, points: Vec<Spot>, width_px: f64, ink: Ink) {
+        self.canvas.borrow_mut().line(points, units(width_px), ink);
+    }
+
+    pub(super) fn disc(&self, centre: Spot, radius_px: f64, ink: Ink) {
+        self.push(Mark::Disc { centre, radius: units(radius_px), ink });
+    }
+
+    /// A diagonal cross.
+    pub(super) fn cross(&self, centre: Spot, reach_px: f64, ink: Ink) {
+        let reach = units(reach_px);
+        for side in [-1, 1] {
+            let ends = [(centre.0 - reach, centre.1 - reach * side), (centre.0 + reach, centre.1 + reach * side)];
+            self.line(ends.to_vec(), 2.25, ink);
+        }
+    }
+
+    pub(super) fn text(&self, text: Text) {
+        self.push(Mark::Text(text));
+    }
+
+    pub(super) fn image(&self, min: Spot, max: Spot, columns: usize, rows: usize, rgb: Vec<u8>) {
+        self.push(Mark::Pixels { min, max, columns, rows, rgb });
+    }
+}
+
+/// A line of text that starts at `at` and stands in the middle of its height.
+pub(super) fn words(words: &str, at: Spot, em_px: f64, ink: Ink) -> Text {
+    Text {
+        words: words.to_owned(),
+        at,
+        em: units(em_px),
+        bold: false,
+        along: Align::Start,
+        across: Align::Middle,
+        upwards: false,
+        ink,
+    }
+}
+
+/// The same text around its place.
+pub(super) fn centred(text: Text) -> Text {
+    Text { along: Align::Middle, ..text }
+}
+
+/// The text, cut with an ellipsis where it would be wider than `width` units.
+pub(super) fn fitted(mut text: Text, width: i32) -> Text {
+    if glyphs::width(&text.words, text.em, text.bold) <= width {
+        return text;
+    }
+    while !text.words.is_empty() {
+        text.words.pop();
+        let cut = format!("{}…", text.words.trim_end());
+        if glyphs::width(&cut, text.em, text.bold) <= width {
+            text.words = cut;
+            break;
+        }
+    }
+    text
+}
+
+/// One entry of a legend: how its sign is drawn, and what it means.
+pub(super) struct Entry<'a> {
+    pub(super) sign: &'a dyn Fn(&Sheet, Spot, Spot),
+    pub(super) words: &'a str,
+}
+
+/// Draws entries in a row that ends at the right of `end`; a sign gets the box from its first to its second corner.
+pub(super) fn legend(sheet: &Sheet, end: Spot, entries: &[Entry<'_>]) {
+    let (sign, gap, after) = (units(28.0), units(8.0), units(26.0));
+    let mut right = end.0;
+    for entry in entries.iter().rev() {
+        let text = words(entry.words, (0, end.1), SMALL_PX, QUIET);
+        let left = right - glyphs::width(&text.words, text.em, false);
+        let half = units(7.0);
+        let corner = left - gap - sign;
+        (entry.sign)(sheet, (corner, end.1 - half), (corner + sign, end.1 + half));
+        sheet.text(Text { at: (left, end.1), ..text });
+        right = corner - after;
+    }
+}

@@ -1,0 +1,170 @@
+//! Writes a canvas as SVG.
+
+use std::fmt::{self, Write};
+
+use super::canvas::{Align, Canvas, Ink, Mark, Spot, Text, UNITS_PER_PX};
+use super::{glyphs, raster};
+use engine::diagnostic::Result;
+
+/// The canvas as a whole SVG document.
+///
+/// # Errors
+/// If an image in it cannot be encoded.
+pub(super) fn svg(canvas: &Canvas, title: &str) -> Result<String> {
+    let (width, height) = (canvas.width_px, canvas.height_px);
+    let mut out = String::new();
+    let _ = writeln!(
+        out,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
+         font-family=\"{}\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n<title>{}</title>",
+        glyphs::FAMILY,
+        Escaped(title)
+    );
+    for mark in &canvas.marks {
+        write_mark(&mut out, mark)?;
+    }
+    out.push_str("</svg>\n");
+    Ok(out)
+}
+
+fn write_mark(out: &mut String, mark: &Mark) -> Result<()> {
+    // Writing into a String cannot fail.
+    let _ = match mark {
+        Mark::Rect { min, max, ink } => {
+            writeln!(out, "<rect {} {}/>", Frame(*min, *max), Paint("fill", *ink))
+        }
+        Mark::Area { points, ink } => {
+            writeln!(out, "<polygon points=\"{}\" {}/>", Points(points), Paint("fill", *ink))
+        }
+        Mark::Line { points, width, ink } => {
+            let (width, paint) = (Px(*width), Paint("stroke", *ink));
+            writeln!(out, "<polyline points=\"{}\" fill=\"none\" {paint} stroke-width=\"{width}\"/>", Points(points))
+        }
+        Mark::Disc { centre, radius, ink } => {
+            let (x, y, r) = (Px(centre.0), Px(centre.1), Px(*radius));
+            writeln!(out, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" {}/>", Paint("fill", *ink))
+        }
+        Mark::Text(text) => write_text(out, text),
+        Mark::Pixels { min, max, columns, rows, rgb } => {
+            let image = base64(&raster::encode(rgb, *columns as u32, *rows as u32)?);
+            let frame = Frame(*min, *max);
+            writeln!(
+                out,
+                "<image {frame} preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" \
+                 href=\"data:image/png;base64,{image}\"/>"
+            )
+        }
+    };
+    Ok(())
+}
+
+fn write_text(out: &mut String, text: &Text) -> fmt::Result {
+    let anchor = match text.along {
+        Align::Start => "start",
+        Align::Middle => "middle",
+        Align::End => "end",
+    };
+    let (x, y) = (Px(text.at.0), Px(text.at.1 + text.baseline()));
+    write!(out, "<text x=\"{x}\" y=\"{y}\" font-size=\"{}\" text-anchor=\"{anchor}\"", Px(text.em))?;
+    if text.bold {
+        out.push_str(" font-weight=\"bold\"");
+    }
+    if text.upwards {
+        write!(out, " transform=\"rotate(-90 {x} {})\"", Px(text.at.1))?;
+    }
+    writeln!(out, " {}>{}</text>", Paint("fill", text.ink), Escaped(&text.words))
+}
+
+/// Canvas units written as pixels.
+struct Px(i32);
+
+impl fmt::Display for Px {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", f64::from(self.0) / f64::from(UNITS_PER_PX))
+    }
+}
+
+struct Points<'a>(&'a [Spot]);
+
+impl fmt::Display for Points<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, spot) in self.0.iter().enumerate() {
+            let space = if index == 0 { "" } else { " " };
+            write!(f, "{space}{},{}", Px(spot.0), Px(spot.1))?;
+        }
+        Ok(())
+    }
+}
+
+struct Frame(Spot, Spot);
+
+impl fmt::Display for Frame {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (width, height) = (Px((self.1.0 - self.0.0).max(0)), Px((self.1.1 - self.0.1).max(0)));
+        write!(f, "x=\"{}\" y=\"{}\" width=\"{width}\" height=\"{height}\"", Px(self.0.0), Px(self.0.1))
+    }
+}
+
+struct Paint(&'static str, Ink);
+
+impl fmt::Display for Paint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(what, Ink { rgb: [red, green, blue], alpha }) = self;
+        write!(f, "{what}=\"#{red:02x}{green:02x}{blue:02x}\"")?;
+        if *alpha < 1.0 { write!(f, " {what}-opacity=\"{alpha}\"") } else { Ok(()) }
+    }
+}
+
+/// Text that may hold anything, made safe for XML.
+struct Escaped<'a>(&'a str);
+
+impl fmt::Display for Escaped<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for c in self.0.chars() {
+            match c {
+                '<' => f.write_str("&lt;")?,
+                '>' => f.write_str("&gt;")?,
+                '&' => f.write_str("&amp;")?,
+                // XML 1.0 has no way to write these.
+                c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => f.write_char('\u{fffd}')?,
+                c => f.write_char(c)?,
+            }
+        }
+        Ok(())
+    }
+}
+
+/// RFC 4648.
+pub(crate) fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for three in bytes.chunks(3) {
+        let byte = |index: usize| u32::from(three.get(index).copied().unwrap_or(0));
+        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for letter in 0..4 {
+            let value = (bits >> (18 - 6 * letter)) & 63;
+            out.push(if letter <= three.len() { char::from(LETTERS[value as usize]) } else { '=' });
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn base64_agrees_with_the_standard() {
+        let pairs =
+            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foob", "Zm9vYg=="), ("fooba", "Zm9vYmE=")];
+        for (plain, coded) in pairs {
+            assert_eq!(base64(plain.as_bytes()), coded);
+        }
+    }
+
+    #[test]
+    fn a_title_cannot_break_the_document() {
+        let document = svg(&Canvas::new(10, 10), "a < b & \"c\" </title>\u{1}").unwrap();
+        assert!(document.contains("<title>a &lt; b &amp; \"c\" &lt;/title&gt;\u{fffd}</title>"), "{document}");
+    }
+}

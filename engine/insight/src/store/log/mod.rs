@@ -1,0 +1,191 @@
+//! `log.bin`: every step of a run, seekable and hashed.
+//!
+//! | bytes | hold |
+//! |---|---|
+//! | 8 | [`MAGIC`] |
+//! | 4 | format, little-endian like every number here |
+//! | 4 | length of the header |
+//! | that many | the header, JSON: engine, behaviour, seed, digest of `run.toml`, rules, bytes of a record, counts of both phases, and `earlier`: the same of each leg before the reward was swapped |
+//! | 32 | SHA-256 of all before |
+//! | chunks | up to 1,024 records of learning, then 32 bytes: SHA-256 of the digest of the chunk before and these records; each leg begins a chunk of its own; the test follows in the same way |
+//!
+//! The format is 1, and 2 if there are earlier legs. A swap is so an event in the log: it comes after as many steps as the
+//! legs before it have; what became of the table stands with the script in `run.toml`.
+//!
+//! The chain of digests begins with 32 zeros and ends as `log_sha256` in `summary.json`. All sizes follow from the header,
+//! so chunk `n` of learning begins at `48 + header + n * (1,024 * record + 32)`, and each chunk can be checked by itself. A
+//! record is laid out as in `experiment/ledger/record.rs`: reward, x, y, yaw as 8-byte floats; state, next state; action, flags
+//! (recover, contact, fallen, explored, prey), beam of the rule, nearest beam as 2 bytes each; nearest range, height, prey
+//! x, y, yaw and coverage as 4-byte floats; a bit for each rule; an 8-byte float for each rule without a fixed value.
+
+mod read;
+mod stored;
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use engine::diagnostic::{Diagnostic, Kind, Result};
+use engine::experiment::{Ledger, Plan};
+
+pub use read::read_log;
+pub use stored::RecordedRun;
+
+/// The name of the file in a run's folder.
+pub const LOG_FILE: &str = "log.bin";
+/// How the file begins.
+pub const MAGIC: [u8; 8] = *b"engnlog\n";
+const FORMAT: u32 = 1;
+/// The format of a log with more than one leg.
+const FORMAT_OF_LEGS: u32 = 2;
+/// Records in a chunk; the last of a phase may have fewer.
+const CHUNK_STEPS: usize = 1024;
+const DIGEST_BYTES: usize = 32;
+/// Magic, format, length of the header.
+const PREFIX_BYTES: usize = 16;
+
+/// Every step of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunLog {
+    /// The steps of learning; none for a behaviour that combines policies.
+    pub learning: Ledger,
+    /// The steps of the test.
+    pub test: Ledger,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Header {
+    engine: String,
+    behaviour: String,
+    seed: u64,
+    run_sha256: String,
+    record_bytes: usize,
+    rules: Vec<RuleEntry>,
+    /// Learning before the reward was swapped for the last time.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    earlier: Vec<LegEntry>,
+    learning: PhaseEntry,
+    test: PhaseEntry,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LegEntry {
+    record_bytes: usize,
+    rules: Vec<RuleEntry>,
+    learning: PhaseEntry,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RuleEntry {
+    name: String,
+    /// What it adds whenever it fires; null if each record holds its value.
+    value: Option<f64>,
+}
+
+/// Steps that were done, and how many of them were kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PhaseEntry {
+    steps: u64,
+    records: usize,
+}
+
+impl PhaseEntry {
+    fn of_last_leg(ledger: &Ledger) -> Self {
+        let (steps, records) = ledger.last_leg();
+        Self { steps, records }
+    }
+}
+
+impl RuleEntry {
+    fn all(plan: &Plan) -> Vec<Self> {
+        let rules = plan.behaviour.rules().iter().enumerate();
+        rules.map(|(index, rule)| Self { name: rule.name.clone(), value: plan.behaviour.fixed_value(index) }).collect()
+    }
+}
+
+impl RunLog {
+    /// An empty log with room for the steps of a plan.
+    #[must_use]
+    pub fn new(plan: &Plan) -> Self {
+        let run = &plan.settings.run;
+        let learns = plan.settings.policies.is_empty();
+        let learning = Ledger::new(plan.first_leg(), if learns { plan.first_steps() } else { 0 });
+        Self { learning, test: Ledger::new(plan, run.test_steps) }
+    }
+
+    /// SHA-256 over the records of both phases, chunk by chunk, 64 hexadecimal digits.
+    #[must_use]
+    pub fn sha256(&self) -> String {
+        hex(&self.chunks().last().map_or([0; DIGEST_BYTES], |(_, digest)| digest))
+    }
+
+    /// The chunks of both phases, each with its digest.
+    fn chunks(&self) -> impl Iterator<Item = (&[u8], [u8; DIGEST_BYTES])> {
+        let phases = [&self.learning, &self.test].into_iter();
+        let legs = phases.flat_map(Ledger::legs);
+        let chunks = legs.flat_map(|(shape, bytes)| bytes.chunks(CHUNK_STEPS * shape.bytes()));
+        chunks.scan([0; DIGEST_BYTES], |before, records| {
+            *before = digest(before, records);
+            Some((records, *before))
+        })
+    }
+
+    /// The whole file of a run whose `run.toml` has the text `run`.
+    ///
+    /// # Errors
+    /// Never in practice: only if the header cannot be written as JSON.
+    pub fn to_bytes(&self, plan: &Plan, seed: u64, run: &str) -> Result<Vec<u8>> {
+        let legs = plan.earlier.iter().zip(self.learning.earlier());
+        let earlier = legs.map(|(leg, records)| LegEntry {
+            record_bytes: records.shape.bytes(),
+            rules: RuleEntry::all(&leg.plan),
+            learning: PhaseEntry { steps: records.steps, records: records.len() },
+        });
+        let header = Header {
+            engine: env!("CARGO_PKG_VERSION").to_owned(),
+            behaviour: plan.behaviour.name().to_owned(),
+            seed,
+            run_sha256: hex(&Sha256::digest(run.as_bytes())),
+            record_bytes: self.learning.shape().bytes(),
+            rules: RuleEntry::all(plan),
+            earlier: earlier.collect(),
+            learning: PhaseEntry::of_last_leg(&self.learning),
+            test: PhaseEntry::of_last_leg(&self.test),
+        };
+        let format = if header.earlier.is_empty() { FORMAT } else { FORMAT_OF_LEGS };
+        let text = serde_json::to_vec(&header)
+            .map_err(|error| Box::new(damaged(format!("the log's header cannot be written: {error}"))))?;
+        let records: usize = self.chunks().map(|(records, digest)| records.len() + digest.len()).sum();
+        let mut file = Vec::with_capacity(records + text.len() + 4096);
+        file.extend_from_slice(&MAGIC);
+        file.extend_from_slice(&format.to_le_bytes());
+        file.extend_from_slice(&(text.len() as u32).to_le_bytes());
+        file.extend_from_slice(&text);
+        let all_before = Sha256::digest(&file);
+        file.extend_from_slice(&all_before);
+        for (records, digest) in self.chunks() {
+            file.extend_from_slice(records);
+            file.extend_from_slice(&digest);
+        }
+        Ok(file)
+    }
+}
+
+fn digest(before: &[u8; DIGEST_BYTES], records: &[u8]) -> [u8; DIGEST_BYTES] {
+    Sha256::new().chain_update(before).chain_update(records).finalize().into()
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+fn damaged(message: String) -> Diagnostic {
+    Diagnostic::new(Kind::State, "E-LOG-FILE", message)
+        .help("copy the folder of the run again, or run the behaviour again")
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,77 @@
+//! A run with its log, read back from its folder.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+use std::sync::Arc;
+
+use super::{LOG_FILE, RunLog, damaged, read_log};
+use crate::store::{StoredRun, read_stored};
+use engine::diagnostic::{Diagnostic, Kind, Result};
+use engine::experiment::Summary;
+use engine::filter::Catalogue;
+
+/// The longest log that is read, bytes: two phases of the most steps with a dozen reward functions each.
+const MAX_BYTES: u64 = 512 << 20;
+
+/// A run whose steps are known.
+pub struct RecordedRun {
+    /// Plan, seed and what decides.
+    pub stored: StoredRun,
+    /// Every step.
+    pub log: RunLog,
+    /// The figures as they were written; none of a run that a failure ended, which was not tested.
+    pub summary: Option<Summary>,
+}
+
+impl RecordedRun {
+    /// Reads `run.toml`, `policy.toml`, `log.bin` and `summary.json` of the folder of one seed,
+    /// which may use these filters. Without steps of a test, the summary may be missing.
+    ///
+    /// # Errors
+    /// If one is missing or damaged, or the four do not belong together.
+    pub fn load(folder: &Path, filters: Arc<Catalogue>) -> Result<Self> {
+        let stored = StoredRun::load_with(folder, filters)?;
+        let run = read_stored(&folder.join("run.toml"))?;
+        let path = folder.join(LOG_FILE);
+        let bytes = read_bytes(&path)?;
+        let log = read_log(&bytes, &stored.plan, stored.seed, &run.text).map_err(|mut error| {
+            error.message = format!("'{}': {}", path.display(), error.message);
+            error
+        })?;
+        let path = folder.join("summary.json");
+        if log.test.is_empty() && !log.learning.is_empty() && !path.exists() {
+            return Ok(Self { stored, log, summary: None });
+        }
+        let text = read_stored(&path)?;
+        let summary: Summary = serde_json::from_str(&text.text).map_err(|error| {
+            let message = format!("'{}' is not the summary of a run: {error}", text.path.display());
+            Box::new(Diagnostic::new(Kind::State, "E-RUN-FILE", message).help("run the behaviour again"))
+        })?;
+        if summary.log_sha256.as_deref() != Some(log.sha256().as_str()) {
+            let message = format!("'{}' is not the log that '{}' was written for", path.display(), text.path.display());
+            let error = Diagnostic::new(Kind::State, "E-LOG-RUN", message);
+            return error.help("keep the files of one run together").into();
+        }
+        Ok(Self { stored, log, summary: Some(summary) })
+    }
+}
+
+fn read_bytes(path: &Path) -> Result<Vec<u8>> {
+    let unfit = |message: String| {
+        Diagnostic::new(Kind::State, "E-LOG-FILE", message)
+            .help("give the folder of one seed, such as runs/wall/1 or runs/wall/1-30/7; an older run has no log: run it again")
+    };
+    let failed = |error: std::io::Error| Box::new(unfit(Diagnostic::disk("read", path, &error).message));
+    let is_file = std::fs::metadata(path).map_err(failed)?.is_file();
+    if !is_file {
+        return unfit(format!("'{}' is not a file", path.display())).into();
+    }
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(failed)?;
+    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(failed)?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return damaged(format!("'{}' has more than {MAX_BYTES} bytes", path.display())).into();
+    }
+    Ok(bytes)
+}

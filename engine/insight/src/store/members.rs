@@ -1,0 +1,110 @@
+//! The policies that a script names: found, read and checked before anything runs.
+
+use std::path::{Path, PathBuf};
+
+use super::policy_file::StoredPolicy;
+use super::read_stored;
+use engine::diagnostic::{Diagnostic, Kind, Result, SourceText, printable};
+use engine::experiment::{Member, Plan};
+
+/// Reads every policy that the plan's script names, in its order.
+///
+/// # Errors
+/// If one is missing or damaged, or was learned with another grid shape or other actions; each points at its call.
+pub fn load_members(plan: &Plan) -> Result<Vec<Member>> {
+    let policies = plan.settings.policies.iter().enumerate();
+    policies.map(|(index, policy)| member(plan, index, &find(plan, index, &policy.path)?)).collect()
+}
+
+/// The same from texts that are at hand: those that a stored run or a pack holds.
+///
+/// # Errors
+/// As [`load_members`], and if there are not as many texts as policies.
+pub fn members_from_texts(plan: &Plan, texts: Vec<SourceText>) -> Result<Vec<Member>> {
+    if texts.len() != plan.settings.policies.len() {
+        let message = format!("the run holds {} of {} policies", texts.len(), plan.settings.policies.len());
+        return Diagnostic::new(Kind::State, "E-RUN-FILE", message).help("run the behaviour again").into();
+    }
+    texts.iter().enumerate().map(|(index, text)| member(plan, index, text)).collect()
+}
+
+fn member(plan: &Plan, index: usize, source: &SourceText) -> Result<Member> {
+    let name = &plan.settings.policies[index].name;
+    let stored = StoredPolicy::parse(source).map_err(|error| {
+        // The place in the policy's own file goes into words, since the caret stands in the script.
+        let line = error.place.as_ref().map(|place| {
+            let (line, _) = place.source.position(place.span.start);
+            format!(" (line {line}: {})", printable(place.label.lines().next().unwrap_or_default()))
+        });
+        let message = format!("policy \"{}\": {}{}", printable(name), error.message, line.unwrap_or_default());
+        wrong(plan, index, message, "this policy", "learn its behaviour again")
+    })?;
+    stored.suits(&plan.settings, plan.grid()?.states()).map_err(|[own, wanted]| {
+        let message = format!("policy \"{}\" was learned with {own}, this script has {wanted}", printable(name));
+        let path = printable(&source.path.display().to_string());
+        let help = "learn it with the grid shape and the actions of this script, or give this script its own";
+        wrong(plan, index, message, &format!("'{path}'"), help)
+    })?;
+    let mut entries = stored.entries.iter();
+    let foreign = entries.try_for_each(|entry| entry.check(&plan.filters));
+    foreign.map_err(|error| wrong(plan, index, error.message, "this policy", "give its filters: --filter-dir DIR"))?;
+    let StoredPolicy { behaviour, filters, grid, policy, .. } = stored;
+    let member = Member { name: name.clone(), behaviour, filters, grid, policy, source: source.clone() };
+    member.eyes(plan).map_err(|error| wrong(plan, index, error.message, "this policy", "learn its behaviour again"))?;
+    Ok(member)
+}
+
+/// The files of those policies that the plan's script names and that are there, sound or not.
+#[must_use]
+pub fn policy_files(plan: &Plan) -> Vec<PathBuf> {
+    let folder = plan.behaviour.source().path.parent().unwrap_or(Path::new(""));
+    let files = plan.settings.policies.iter().map(|policy| first_file(&tried(folder, &policy.path)).cloned());
+    files.flatten().collect()
+}
+
+/// Where a policy may be, the likelier place first.
+fn tried(scripts: &Path, path: &str) -> [PathBuf; 2] {
+    let file = |path: PathBuf| if path.is_dir() { path.join("policy.toml") } else { path };
+    [file(scripts.join(path)), file(PathBuf::from(path))]
+}
+
+/// Only ordinary files: others may never end.
+fn first_file(tried: &[PathBuf]) -> Option<&PathBuf> {
+    tried.iter().find(|path| path.is_file())
+}
+
+/// The text of a policy: its path is meant from the script or, if it is not there, from where the user stands.
+fn find(plan: &Plan, index: usize, path: &str) -> Result<SourceText> {
+    let folder = plan.behaviour.source().path.parent().unwrap_or(Path::new(""));
+    let tried = tried(folder, path);
+    let Some(found) = first_file(&tried) else {
+        let name = printable(&plan.settings.policies[index].name);
+        let message =
+            format!("policy \"{name}\" is not there: no file '{}'", printable(&tried[1].display().to_string()));
+        return Err(wrong(plan, index, message, "not found", &maker(folder, path)));
+    };
+    read_stored(found).map_err(|error| wrong(plan, index, error.message, "this policy", "learn its behaviour again"))
+}
+
+/// The command that makes a missing policy, as far as its path tells.
+fn maker(scripts: &Path, path: &str) -> String {
+    let parts: Vec<&str> = path.split('/').filter(|part| !matches!(*part, "" | "." | "policy.toml")).collect();
+    if let [.., name, seed] = parts[..]
+        && let Ok(seed) = seed.parse::<u64>()
+    {
+        let script = scripts.join(format!("{name}.rhai"));
+        if script.is_file() {
+            let seed = if seed == 1 { String::new() } else { format!(" --seed {seed}") };
+            return format!("make it with: engine run {}{seed}", printable(&script.display().to_string()));
+        }
+    }
+    "make it with: engine run SCRIPT, then write the folder of that run here".to_owned()
+}
+
+fn wrong(plan: &Plan, index: usize, message: String, label: &str, help: &str) -> Box<Diagnostic> {
+    let error = Diagnostic::new(Kind::Input, "E-POLICY", message).help(help);
+    Box::new(match plan.behaviour.place_of(&format!("policy:{index}")) {
+        Some(span) => error.at(plan.behaviour.source(), span, label),
+        None => error,
+    })
+}

@@ -1,0 +1,240 @@
+//! `policy.toml`: a learned table with the filter, grid and actions that it belongs to.
+
+use serde::{Deserialize, Serialize};
+
+use super::run_file::FilterEntry;
+use super::toml_error;
+use engine::diagnostic::{Diagnostic, Kind, Result, SourceText};
+use engine::filter::Catalogue;
+use engine::geometry::Twist;
+use engine::learner::{Policy, PolicyRow};
+use engine::settings::{FilterSettings, GridSettings, Settings};
+use engine::state::MAX_STATES;
+
+const FORMAT: u32 = 2;
+
+#[derive(Deserialize)]
+struct FormatLine {
+    format: u32,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PolicyFile {
+    format: u32,
+    behaviour: String,
+    rows: u64,
+    columns: u64,
+    occupied: f64,
+    fill: bool,
+    states: usize,
+    /// Forward speed in m/s and turning speed in rad/s.
+    actions: Vec<[f64; 2]>,
+    #[serde(default)]
+    filter: Vec<FilterEntry>,
+    #[serde(default)]
+    state: Vec<StateEntry>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StateEntry {
+    index: usize,
+    visits: u64,
+    best: usize,
+    values: Vec<f64>,
+}
+
+/// A policy as it was stored, with what it perceives and does.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StoredPolicy {
+    /// The behaviour that it learned.
+    pub behaviour: String,
+    /// Its filter chain.
+    pub filters: Vec<FilterSettings>,
+    /// Its grid.
+    pub grid: GridSettings,
+    /// Its actions.
+    pub actions: Vec<Twist>,
+    /// What it learned.
+    pub policy: Policy,
+    /// Its filter chain as it was written, digests included.
+    pub(super) entries: Vec<FilterEntry>,
+}
+
+/// The text of `policy.toml`; states that were never visited are left out.
+///
+/// # Errors
+/// Never in practice: only if the table cannot be written as TOML.
+pub fn policy_to_toml(behaviour: &str, settings: &Settings, filters: &Catalogue, policy: &Policy) -> Result<String> {
+    let state = policy.rows().iter().enumerate().filter_map(|(index, row)| {
+        let row = row.as_ref()?;
+        let best = policy.best(index)?.0;
+        Some(StateEntry { index, visits: row.visits, best, values: row.values.clone() })
+    });
+    let file = PolicyFile {
+        format: FORMAT,
+        behaviour: behaviour.to_owned(),
+        rows: settings.grid.rows,
+        columns: settings.grid.columns,
+        occupied: settings.grid.occupied,
+        fill: settings.grid.fill,
+        states: policy.rows().len(),
+        actions: settings.actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
+        filter: settings.filters.iter().map(|filter| FilterEntry::new(filter, filters)).collect(),
+        state: state.collect(),
+    };
+    toml::to_string(&file).map_err(|error| {
+        Box::new(Diagnostic::new(Kind::State, "E-POLICY", format!("the policy cannot be written: {error}")))
+    })
+}
+
+impl StoredPolicy {
+    /// Reads `policy.toml`.
+    ///
+    /// # Errors
+    /// If the file is damaged or of another format.
+    pub fn parse(source: &SourceText) -> Result<Self> {
+        let format: FormatLine = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
+        if format.format != FORMAT {
+            let message = format!("has format {}, this engine reads format {FORMAT}", format.format);
+            return Err(unfit(source, &message, "learn the behaviour again"));
+        }
+        let file: PolicyFile = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
+        let grid = GridSettings { rows: file.rows, columns: file.columns, occupied: file.occupied, fill: file.fill };
+        // A state of the largest grid takes 8 bytes even if it was never met: the number is checked before it is believed.
+        if file.states > MAX_STATES || file.actions.is_empty() {
+            return Err(unfit(source, "has no actions or too many states", "learn the behaviour again"));
+        }
+        let mut rows = vec![None; file.states];
+        for StateEntry { index, visits, values, .. } in file.state {
+            let finite = values.iter().all(|value| value.is_finite());
+            if index >= file.states || values.len() != file.actions.len() || !finite || rows[index].is_some() {
+                let message = format!("has a damaged entry for state {index}");
+                return Err(unfit(source, &message, "learn the behaviour again"));
+            }
+            rows[index] = Some(PolicyRow { visits, values });
+        }
+        Ok(Self {
+            behaviour: file.behaviour,
+            filters: file.filter.iter().map(FilterEntry::settings).collect(),
+            entries: file.filter,
+            grid,
+            policy: Policy::new(file.actions.len(), rows),
+            actions: file.actions.iter().map(|[linear, angular]| Twist::new(*linear, *angular)).collect(),
+        })
+    }
+
+    /// Whether it suits the grid shape, of so many states, and the actions of these settings.
+    ///
+    /// # Errors
+    /// What differs: its own value, then the settings'.
+    pub fn suits(&self, settings: &Settings, states: usize) -> std::result::Result<(), [String; 2]> {
+        let (own, grid) = (&self.grid, &settings.grid);
+        let shape = |rows: u64, columns: u64| format!("a grid of {rows}x{columns}");
+        let fill = |fill: bool| format!("a grid {} column fill", if fill { "with" } else { "without" });
+        if (own.rows, own.columns) != (grid.rows, grid.columns) {
+            return Err([shape(own.rows, own.columns), shape(grid.rows, grid.columns)]);
+        }
+        if own.fill != grid.fill {
+            return Err([fill(own.fill), fill(grid.fill)]);
+        }
+        if self.policy.rows().len() != states {
+            return Err([format!("{} states", self.policy.rows().len()), format!("{states} states")]);
+        }
+        if self.actions.len() != settings.actions.len() {
+            return Err([format!("{} actions", self.actions.len()), format!("{} actions", settings.actions.len())]);
+        }
+        let motion = |action: usize, twist: &Twist| {
+            format!("[{}, {}] as action {action}", twist.linear_m_per_s, twist.angular_rad_per_s)
+        };
+        let pairs = self.actions.iter().zip(&settings.actions).enumerate();
+        match pairs.into_iter().find(|(_, (own, twist))| own != twist) {
+            Some((action, (own, twist))) => Err([motion(action, own), motion(action, twist)]),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Reads `policy.toml` for a plan with these settings and so many states.
+///
+/// # Errors
+/// If the file is damaged, or was learned with another grid or other actions.
+pub fn policy_from_toml(source: &SourceText, settings: &Settings, states: usize) -> Result<Policy> {
+    let stored = StoredPolicy::parse(source)?;
+    stored.suits(settings, states).map_err(|[own, wanted]| {
+        unfit(source, &format!("was learned with {own}, this run has {wanted}"), "learn the behaviour again")
+    })?;
+    Ok(stored.policy)
+}
+
+fn unfit(source: &SourceText, message: &str, help: &str) -> Box<Diagnostic> {
+    let message = format!("'{}' {message}", source.path.display());
+    Box::new(Diagnostic::new(Kind::State, "E-POLICY", message).help(help))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn policy() -> Policy {
+        let values: Vec<f64> = (0..14).map(|action| -0.1 - f64::from(action) / 3.0).collect();
+        let mut rows = vec![None; 64];
+        rows[5] = Some(PolicyRow { visits: 17, values });
+        Policy::new(14, rows)
+    }
+
+    #[test]
+    fn a_policy_is_read_back_bit_for_bit() {
+        let settings = Settings::default();
+        let text = policy_to_toml("wall", &settings, &Catalogue::linked_in(), &policy()).unwrap();
+        let read = policy_from_toml(&SourceText::new("policy.toml", text), &settings, 64).unwrap();
+        assert_eq!(read, policy());
+    }
+
+    #[test]
+    fn filters_are_read_back_with_their_parameters() {
+        let mut settings = Settings::default();
+        let parameters = vec![("saturation".to_owned(), 0.4), ("hue_deg".to_owned(), 120.0)];
+        settings.filters = vec![FilterSettings { name: "colour".to_owned(), parameters }];
+        let source = SourceText::new(
+            "policy.toml",
+            policy_to_toml("wall", &settings, &Catalogue::linked_in(), &policy()).unwrap(),
+        );
+        let mut read = StoredPolicy::parse(&source).unwrap().filters;
+        read[0].parameters.sort_by_key(|(name, _)| std::cmp::Reverse(name.clone()));
+        assert_eq!(read, settings.filters);
+    }
+
+    #[test]
+    fn the_first_format_is_named_and_not_guessed_at() {
+        let old = "format = 1\nbehaviour = \"wall\"\nfilters = [\"sobel(threshold: 60)\"]\n";
+        let error = StoredPolicy::parse(&SourceText::new("policy.toml", old)).unwrap_err();
+        assert_eq!(error.message, "'policy.toml' has format 1, this engine reads format 2");
+    }
+
+    #[test]
+    fn another_grid_or_other_actions_are_refused() {
+        let mut settings = Settings::default();
+        let source = SourceText::new(
+            "policy.toml",
+            policy_to_toml("wall", &settings, &Catalogue::linked_in(), &policy()).unwrap(),
+        );
+        settings.grid.rows = 4;
+        assert!(policy_from_toml(&source, &settings, 125).unwrap_err().message.contains("a grid of 3x3"));
+        settings.grid.rows = 3;
+        settings.actions.pop();
+        let error = policy_from_toml(&source, &settings, 64).unwrap_err();
+        assert!(error.message.contains("with 14 actions, this run has 13 actions"), "{}", error.message);
+    }
+
+    #[test]
+    fn damage_is_an_error_and_not_a_guess() {
+        let settings = Settings::default();
+        let text = policy_to_toml("wall", &settings, &Catalogue::linked_in(), &policy()).unwrap();
+        for damaged in [text.replace("index = 5", "index = 64"), text.replace("-0.1,", "nan,"), text[..200].to_owned()]
+        {
+            assert!(policy_from_toml(&SourceText::new("policy.toml", damaged), &settings, 64).is_err());
+        }
+    }
+}

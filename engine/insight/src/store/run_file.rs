@@ -1,0 +1,279 @@
+//! `run.toml`: all that is needed to do a run again, script and world included.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use toml::Table;
+
+use super::members::members_from_texts;
+use super::{policy_from_toml, read_stored, toml_error};
+use engine::diagnostic::{Diagnostic, Kind, Result, SourceText, printable};
+use engine::experiment::{Leg, Member, Plan};
+use engine::filter::Catalogue;
+use engine::geometry::Twist;
+use engine::learner::{Carry, Policy};
+use engine::reward::Behaviour;
+use engine::settings::{FilterSettings, SETTINGS, Settings, Value, apply};
+use engine::world::Layout;
+
+const FORMAT: u32 = 1;
+/// The format of a run whose reward was swapped while it learned.
+const FORMAT_OF_LEGS: u32 = 2;
+/// As many as `run.steps` may be.
+const MOST_LEG_STEPS: u64 = 1_000_000_000;
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RunFile {
+    format: u32,
+    engine: String,
+    behaviour: String,
+    seed: u64,
+    actions: Vec<[f64; 2]>,
+    filters: Vec<FilterEntry>,
+    settings: Table,
+    script: TextEntry,
+    world: TextEntry,
+    /// Of a combination: the policies, in the order of the script.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    policy: Vec<TextEntry>,
+    /// What was learned before under other scripts, in order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    leg: Vec<LegEntry>,
+}
+
+/// Learning under one script, until the reward was swapped. Only rules and the learner's settings may differ from leg to leg.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LegEntry {
+    steps: u64,
+    /// What became of the table then.
+    table: Carry,
+    settings: Table,
+    script: TextEntry,
+}
+
+/// A filter stage with the parameters that were set.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FilterEntry {
+    name: String,
+    /// The digest of the file that the filter came from; none for those linked in.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    sha256: Option<String>,
+    parameters: BTreeMap<String, f64>,
+}
+
+impl FilterEntry {
+    pub(super) fn new(filter: &FilterSettings, filters: &Catalogue) -> Self {
+        let sha256 = filters.find(&filter.name).ok().and_then(|entry| entry.sha256.clone());
+        Self { name: filter.name.clone(), sha256, parameters: filter.parameters.iter().cloned().collect() }
+    }
+
+    /// Refuses another file of the same name than was used then.
+    pub(super) fn check(&self, filters: &Catalogue) -> Result<()> {
+        let found = filters.find(&self.name).map_err(|mut error| {
+            if self.sha256.is_some() && error.code == "E-FILTER-SETTING" {
+                error.help = Some("the run used it from a folder; give that folder: --filter-dir DIR".to_owned());
+            }
+            error
+        })?;
+        if found.sha256 == self.sha256 {
+            return Ok(());
+        }
+        let digest = |sha256: &Option<String>| {
+            sha256.as_ref().map_or("linked in".to_owned(), |sha256| format!("sha256:{sha256}"))
+        };
+        let message = format!(
+            "filter '{}' is not the one that was used: then {}, now {}",
+            printable(&self.name),
+            digest(&self.sha256),
+            digest(&found.sha256)
+        );
+        Diagnostic::new(Kind::State, "E-RUN-FILTER", message)
+            .help("give the folder of that filter: --filter-dir DIR")
+            .into()
+    }
+
+    pub(super) fn settings(&self) -> FilterSettings {
+        let parameters = self.parameters.iter().map(|(key, value)| (key.clone(), *value)).collect();
+        FilterSettings { name: self.name.clone(), parameters }
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TextEntry {
+    path: String,
+    sha256: String,
+    text: String,
+}
+
+impl TextEntry {
+    fn new(source: &SourceText) -> Self {
+        let path = source.path.display().to_string();
+        Self { path, sha256: sha256(&source.text), text: source.text.to_string() }
+    }
+
+    fn check(&self, file: &SourceText) -> Result<SourceText> {
+        if sha256(&self.text) != self.sha256 {
+            let message = format!("'{}' holds a changed copy of '{}'", file.path.display(), self.path);
+            return Diagnostic::new(Kind::State, "E-RUN-FILE", message).help("run the behaviour again").into();
+        }
+        Ok(SourceText::new(self.path.clone(), self.text.clone()))
+    }
+}
+
+fn sha256(text: &str) -> String {
+    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// The text of `run.toml`; `members` are the policies of a combination, none for a behaviour that learns.
+///
+/// # Errors
+/// Never in practice: only if the settings cannot be written as TOML.
+pub fn run_to_toml(plan: &Plan, members: &[Member], seed: u64) -> Result<String> {
+    let settings = &plan.settings;
+    let legs = plan.earlier.iter().map(|leg| LegEntry {
+        steps: leg.steps,
+        table: leg.then,
+        settings: settings_table(&leg.plan.settings),
+        script: TextEntry::new(leg.plan.behaviour.source()),
+    });
+    let file = RunFile {
+        format: if plan.earlier.is_empty() { FORMAT } else { FORMAT_OF_LEGS },
+        engine: env!("CARGO_PKG_VERSION").to_owned(),
+        behaviour: plan.behaviour.name().to_owned(),
+        seed,
+        actions: settings.actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
+        filters: settings.filters.iter().map(|filter| FilterEntry::new(filter, &plan.filters)).collect(),
+        settings: settings_table(settings),
+        script: TextEntry::new(plan.behaviour.source()),
+        world: TextEntry::new(&plan.layout.source),
+        policy: members.iter().map(|member| TextEntry::new(&member.source)).collect(),
+        leg: legs.collect(),
+    };
+    toml::to_string_pretty(&file).map_err(|error| {
+        Box::new(Diagnostic::new(Kind::State, "E-RUN-FILE", format!("the settings cannot be written: {error}")))
+    })
+}
+
+fn settings_table(settings: &Settings) -> Table {
+    let mut table = Table::new();
+    for row in SETTINGS {
+        let group = table.entry(row.group).or_insert_with(|| toml::Value::Table(Table::new()));
+        let value = match (row.get)(settings) {
+            Value::Flag(flag) => toml::Value::Boolean(flag),
+            Value::Text(text) => toml::Value::String(text),
+            Value::Number(number) => toml::Value::Float(number),
+        };
+        if let Some(group) = group.as_table_mut() {
+            group.insert(row.key.to_owned(), value);
+        }
+    }
+    table
+}
+
+/// A run read back from its folder.
+pub struct StoredRun {
+    /// The plan as it was, with its own world.
+    pub plan: Plan,
+    /// The seed.
+    pub seed: u64,
+    /// What decides.
+    pub decider: Decider,
+}
+
+/// What decides in a stored run.
+pub enum Decider {
+    /// The policy that the run learned.
+    Learned(Policy),
+    /// The policies that it combined.
+    Combined(Vec<Member>),
+}
+
+impl StoredRun {
+    /// Reads `run.toml` of a run's folder, and `policy.toml` unless the run combined policies and so holds them.
+    ///
+    /// # Errors
+    /// If a file is missing, damaged, or of another format.
+    pub fn load(folder: &Path) -> Result<Self> {
+        Self::load_with(folder, Arc::new(Catalogue::linked_in()))
+    }
+
+    /// The same for a run that used other filters than those linked in.
+    ///
+    /// # Errors
+    /// As [`StoredRun::load`], and if a filter is missing or another than it was.
+    pub fn load_with(folder: &Path, filters: Arc<Catalogue>) -> Result<Self> {
+        let source = read_stored(&folder.join("run.toml"))?;
+        let file: RunFile = toml::from_str(&source.text).map_err(|error| toml_error(&source, &error))?;
+        if file.format != if file.leg.is_empty() { FORMAT } else { FORMAT_OF_LEGS } {
+            let message = format!(
+                "'{}' has format {} and {} earlier legs; this engine reads format {FORMAT} without, {FORMAT_OF_LEGS} with",
+                source.path.display(),
+                file.format,
+                file.leg.len()
+            );
+            return Diagnostic::new(Kind::State, "E-RUN-FILE", message).into();
+        }
+        let layout = Arc::new(Layout::parse(file.world.check(&source)?)?);
+        file.filters.iter().try_for_each(|filter| filter.check(&filters))?;
+        let plan_of = |script: &TextEntry, table: &Table| {
+            let behaviour = Arc::new(Behaviour::parse(&file.behaviour, script.check(&source)?)?);
+            let settings = settings(&source, behaviour.settings(), &file, table)?;
+            Plan::with_layout(behaviour, settings, Arc::clone(&layout), Arc::clone(&filters))
+        };
+        let plan = plan_of(&file.script, &file.settings)?;
+        let leg = |leg: &LegEntry| {
+            if leg.steps > MOST_LEG_STEPS {
+                let message = format!("'{}' has a leg of {} steps", source.path.display(), leg.steps);
+                return Diagnostic::new(Kind::State, "E-RUN-FILE", message).help("run the behaviour again").into();
+            }
+            let earlier = plan_of(&leg.script, &leg.settings)?;
+            match plan.differs_beyond_reward(&earlier) {
+                None => Ok(Leg { plan: earlier, steps: leg.steps, then: leg.table }),
+                Some(what) => Err(Box::new(not_one_run(&source, &what))),
+            }
+        };
+        let legs = file.leg.iter().map(leg).collect::<Result<Vec<_>>>()?;
+        let plan = plan.after(legs);
+        let decider = if plan.settings.policies.is_empty() {
+            let states = plan.grid()?.states();
+            let policy = read_stored(&folder.join("policy.toml"))?;
+            Decider::Learned(policy_from_toml(&policy, &plan.settings, states)?)
+        } else {
+            let texts = file.policy.iter().map(|policy| policy.check(&source)).collect::<Result<Vec<_>>>()?;
+            Decider::Combined(members_from_texts(&plan, texts)?)
+        };
+        Ok(Self { plan, seed: file.seed, decider })
+    }
+}
+
+fn not_one_run(source: &SourceText, what: &str) -> Diagnostic {
+    let message = format!("the legs of '{}' differ in {what}: only the reward may change", source.path.display());
+    Diagnostic::new(Kind::State, "E-RUN-FILE", message).help("run the behaviour again")
+}
+
+fn settings(source: &SourceText, written: &Settings, file: &RunFile, table: &Table) -> Result<Settings> {
+    let mut settings = written.clone();
+    settings.actions = file.actions.iter().map(|[linear, angular]| Twist::new(*linear, *angular)).collect();
+    settings.filters = file.filters.iter().map(FilterEntry::settings).collect();
+    for (group, keys) in table {
+        for (key, value) in keys.as_table().into_iter().flatten() {
+            let value = match value {
+                toml::Value::Boolean(flag) => Value::Flag(*flag),
+                toml::Value::String(text) => Value::Text(text.clone()),
+                other => Value::Number(other.as_float().unwrap_or(f64::NAN)),
+            };
+            apply(&mut settings, group, key, &value).map_err(|error| {
+                let message = format!("'{}': {} ({})", source.path.display(), error.message, error.found);
+                Box::new(Diagnostic::new(Kind::State, "E-RUN-FILE", message))
+            })?;
+        }
+    }
+    Ok(settings)
+}

@@ -1,0 +1,105 @@
+//! `engine check`: what is wrong or suspicious in a behaviour, before it is learned.
+
+use std::io::IsTerminal;
+use std::sync::atomic::AtomicBool;
+
+use engine::experiment::{Overrides, Plan};
+use insight::lint::{self, Exploits, Report, Severity};
+use pack::Runnable;
+
+use super::behaviour::open_to_look;
+use super::words::short;
+use crate::cli::CheckArguments;
+use crate::console::{Console, ConsoleError};
+
+pub(crate) fn run(arguments: &CheckArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
+    let overrides =
+        Overrides { world: arguments.world.clone(), steps: None, test_steps: None, set: arguments.set.clone() };
+    // A pack's filters stand in a folder that lives as long as it does.
+    let Runnable { plan, unpacked: _unpacked, .. } =
+        open_to_look(&arguments.behaviour, &overrides, &arguments.filters, false)?;
+    let report = lint::check(&plan)?;
+    console.json(&report)?;
+    print(console, &plan, &report)?;
+    Ok(u8::from(!report.is_clean()))
+}
+
+fn print(console: &mut Console, plan: &Plan, report: &Report) -> std::result::Result<(), ConsoleError> {
+    let plain = std::env::var_os("NO_COLOR").is_some() || std::env::var("TERM").as_deref() == Ok("dumb");
+    let colour = std::io::stdout().is_terminal() && !plain;
+    for finding in &report.findings {
+        console.line(&finding.diagnostic(plan).render_as(finding.severity, colour))?;
+        console.line("")?;
+    }
+    if report.left_out > 0 {
+        console.line(&format!("... and {} more\n", report.left_out))?;
+    }
+    if let Some(exploits) = &report.exploits {
+        print_exploits(console, exploits)?;
+    }
+    console.line(&format!(
+        "checked:   {} in {}, {} steps: {}",
+        report.behaviour,
+        report.world,
+        report.steps,
+        counts(report)
+    ))?;
+    if report.findings.is_empty() {
+        return Ok(());
+    }
+    console.line("           engine explain CODE says more about a code")
+}
+
+/// Checks the behaviour of a run that is over; nothing if it was stopped.
+pub(super) fn beside_a_run(plan: &Plan, threads: usize, stop: &AtomicBool, console: &Console) -> Option<Report> {
+    lint::check_until(plan, threads, stop).unwrap_or_else(|fault| {
+        // The run itself is done, and its results are worth keeping.
+        console.note(&format!("the check ended early: {}", fault.message));
+        None
+    })
+}
+
+/// The result of a check in two lines at most.
+pub(super) fn print_short(console: &mut Console, report: &Report) -> std::result::Result<(), ConsoleError> {
+    console.line(&format!("checked:   {}; report.html shows them", counts(report)))?;
+    match &report.exploits {
+        Some(exploits) => console.line(&format!("           {}", exploits.sentence)),
+        None => Ok(()),
+    }
+}
+
+fn counts(report: &Report) -> String {
+    let count = |severity| report.findings.iter().filter(|finding| finding.severity == severity).count();
+    let words = |count: usize, one: &str| format!("{count} {one}{}", if count == 1 { "" } else { "s" });
+    let [errors, warnings] = [Severity::Error, Severity::Warning].map(count);
+    format!("{}, {}", words(errors, "error"), words(warnings, "warning"))
+}
+
+fn print_exploits(console: &mut Console, exploits: &Exploits) -> std::result::Result<(), ConsoleError> {
+    console.line("What this reward can be had for:")?;
+    let heads = ["reward", "failures", "speed", "net", "spinning"];
+    let units = ["per 400", "per 1000", "m/s", "m/s", "%"];
+    for [a, b, c, d, e] in [heads, units] {
+        console.line(&format!("  {:24}{a:>10}{b:>10}{c:>8}{d:>8}{e:>10}", ""))?;
+    }
+    for exploit in &exploits.behaviours {
+        let net = exploit.net_m_per_s.map_or("-".to_owned(), |net| format!("{net:.2}"));
+        console.line(&format!(
+            "  {:24}{:>10}{:>10}{:>8.2}{net:>8}{:>10.0}{}",
+            exploit.behaviour,
+            short(exploit.reward_per_400),
+            short(exploit.failures_per_1000),
+            exploit.speed_m_per_s,
+            100.0 * exploit.spinning,
+            if exploit.nowhere { "   gets nowhere" } else { "" }
+        ))?;
+    }
+    let coverage = &exploits.coverage;
+    console.line(&format!("  {:24}{:>10}", "no failure, driving on", short(exploits.honest_per_400)))?;
+    console.line(&format!("  {}", exploits.sentence))?;
+    console.line(&format!(
+        "  The model has seen {} of {} states, {} of them in fewer than 20 steps; {} of {} pairs of state and action \
+         were never tried.\n",
+        coverage.states_seen, coverage.states, coverage.states_hardly_seen, coverage.pairs_untried, coverage.pairs
+    ))
+}

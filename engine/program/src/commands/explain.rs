@@ -1,0 +1,198 @@
+//! `engine explain`: why a step of a run was rewarded as it was; or what the code of an error means.
+
+use std::io::IsTerminal;
+use std::path::Path;
+
+use engine::diagnostic::{Diagnostic, Kind, Result, all_codes, code_page, excerpt, nearest_name, printable};
+use engine::experiment::{Phase, Plan, Playback, RuleReasons, StepReasons};
+use insight::report::{FrameData, FramePanel, Picture, frame};
+use insight::store::{RecordedRun, StoredRun};
+use serde::Serialize;
+
+use super::folder::create;
+use super::sources::catalogue;
+use super::words::{fact, icon, motion, short};
+use crate::cli::ExplainArguments;
+use crate::console::{Console, ConsoleError};
+
+#[derive(Serialize)]
+struct Report {
+    behaviour: String,
+    world: String,
+    seed: u64,
+    /// `learning` or `test`.
+    phase: &'static str,
+    #[serde(flatten)]
+    reasons: StepReasons,
+    /// What the robot saw when it chose, and at the end of the step: camera, filters, grid.
+    pictures: [String; 2],
+}
+
+pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
+    let topic = arguments.topic.to_uppercase();
+    let is_code = topic.starts_with("E-") || topic.starts_with("W-");
+    if is_code && !Path::new(&arguments.topic).exists() {
+        if arguments.step.is_some() || arguments.test || arguments.out.is_some() {
+            let error = Diagnostic::new(Kind::Usage, "E-CODE", "the page of a code has no steps and no pictures");
+            return Err(Box::new(error.help(format!("write: engine explain {}", printable(&topic)))).into());
+        }
+        return code(&topic, console);
+    }
+    let Some(step) = arguments.step else {
+        let error = Diagnostic::new(Kind::Usage, "E-LOG-STEP", "which step is to be explained?");
+        return Err(Box::new(error.help("add --step N; engine replay RUN shows when each rule fired")).into());
+    };
+    let recorded = RecordedRun::load(Path::new(&arguments.topic), catalogue(&arguments.filters)?)?;
+    let StoredRun { plan, seed, .. } = &recorded.stored;
+    let (phase, ledger, name) = match arguments.test {
+        false => (Phase::Learning, &recorded.log.learning, "learning"),
+        true => (Phase::Test, &recorded.log.test, "test"),
+    };
+    let out = arguments.out.as_deref().unwrap_or(Path::new(&arguments.topic));
+    create(out)?;
+    let mut playback = Playback::new(plan, *seed, phase, ledger)?;
+    playback.seek(step)?;
+    let stem = if arguments.test { format!("test-step-{step}") } else { format!("step-{step}") };
+    let stems = [format!("{stem}-before"), format!("{stem}-after")];
+    let before = draw(plan, &playback, &format!("step {step} of {name}: what the robot saw when it chose"))?;
+    let Some(reasons) = StepReasons::of_next(&mut playback)? else {
+        let message = format!("the log has {} steps of {name}, no step {step}", ledger.len());
+        let error = Diagnostic::new(Kind::Usage, "E-LOG-STEP", message).help("steps are counted from 0");
+        return Err(Box::new(error).into());
+    };
+    if let Some(field) = playback.difference() {
+        let message = format!("the run does not come out as it was recorded: step {step} of {name}: {field}");
+        let error = Diagnostic::new(Kind::State, "E-LOG-DIFFERS", message);
+        return Err(Box::new(error.help("find where it begins to differ: engine replay RUN --verify")).into());
+    }
+    before.write(out, &stems[0])?;
+    draw(plan, &playback, &format!("step {step} of {name}: what the robot saw at its end"))?.write(out, &stems[1])?;
+    let pictures = stems.map(|stem| out.join(format!("{stem}.png")).display().to_string());
+    let (behaviour, world) = (plan.behaviour.name().to_owned(), plan.layout.name.clone());
+    let report = Report { behaviour, world, seed: *seed, phase: name, reasons, pictures };
+    console.json(&report)?;
+    print(console, playback.plan(), &report)?;
+    Ok(0)
+}
+
+fn code(code: &str, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
+    let Some(page) = code_page(code) else {
+        let error = Diagnostic::new(Kind::Usage, "E-CODE", format!("there is no code '{}'", printable(code)));
+        return Err(Box::new(match nearest_name(code, all_codes()) {
+            Some(near) => error.help(format!("did you mean '{near}'?")),
+            None => error.help("give the code as it stands in the brackets of the message: error[E-SCRIPT-FACT]"),
+        })
+        .into());
+    };
+    console.json(&serde_json::json!({ "code": code, "page": page }))?;
+    console.line(&format!("{code}\n\n{page}"))?;
+    Ok(0)
+}
+
+/// Camera, each filter, grid.
+fn draw(plan: &Plan, playback: &Playback<'_>, title: &str) -> Result<Picture> {
+    let (cycle, image) = (playback.cycle(), &playback.cycle().robot().photograph());
+    let mut panels = vec![FramePanel::image("camera", image)];
+    panels.extend(cycle.stages().map(|(filter, pixels)| FramePanel {
+        name: filter.name,
+        format: filter.writes,
+        pixels,
+    }));
+    let grid = cycle.grid();
+    let shares: Vec<f32> =
+        grid.counts().iter().enumerate().map(|(cell, count)| *count as f32 / grid.area_px(cell) as f32).collect();
+    let (rows, columns) = grid.size();
+    frame(&FrameData {
+        title: &format!("{}, {title}", plan.behaviour.name()),
+        width_px: image.width_px,
+        height_px: image.height_px,
+        panels: &panels,
+        rows,
+        columns,
+        shares: &shares,
+        occupied: grid.occupied(),
+        filled: &grid.cells(cycle.state()),
+        state: cycle.state(),
+    })
+}
+
+fn print(console: &mut Console, plan: &Plan, report: &Report) -> std::result::Result<(), ConsoleError> {
+    let reasons = &report.reasons;
+    let Report { behaviour, world, seed, phase, .. } = report;
+    console.line(&format!(
+        "step {} of {phase}, {} s: {behaviour} in {world}, seed {seed}",
+        reasons.step,
+        short(reasons.time_s)
+    ))?;
+    let how = match reasons.explored {
+        _ if !plan.settings.policies.is_empty() => "",
+        true => " (tried, not the best one known)",
+        false => " (the best one known)",
+    };
+    console.line(&format!("action:    {}{how}", motion(reasons.motion)))?;
+    let columns = plan.settings.grid.columns as usize;
+    let (from, to) = (icon(&reasons.state.cells, columns), icon(&reasons.next_state.cells, columns));
+    for (line, (from, to)) in from.iter().zip(&to).enumerate() {
+        let arrow = if line == 0 { "->" } else { "  " };
+        let names = match line {
+            0 => format!("    state {} -> state {}", reasons.state.index, reasons.next_state.index),
+            _ => String::new(),
+        };
+        console.line(&format!("           {from}  {arrow}  {to}{names}"))?;
+    }
+    let [x_m, y_m, yaw_rad] = reasons.pose;
+    let touched = if reasons.contact { ", touching something" } else { "" };
+    let fallen = if reasons.fallen { ", fallen" } else { "" };
+    console.line(&format!(
+        "robot:     x {x_m:.2} m, y {y_m:.2} m, heading {:.0}°{touched}{fallen}",
+        yaw_rad.to_degrees()
+    ))?;
+    if let Some([x_m, y_m, _]) = reasons.prey {
+        console.line(&format!("prey:      x {x_m:.2} m, y {y_m:.2} m"))?;
+    }
+    let after = if reasons.recover { ", then recovery" } else { "" };
+    console.line(&format!("reward:    {}{after}", short(reasons.reward)))?;
+    for rule in reasons.rules.iter().filter(|rule| rule.added.is_some()) {
+        console.line("")?;
+        console.line(&fired(plan, rule))?;
+    }
+    let silent: Vec<&RuleReasons> = reasons.rules.iter().filter(|rule| rule.added.is_none()).collect();
+    if !silent.is_empty() {
+        console.line("\nwhat did not fire:")?;
+    }
+    for rule in silent {
+        console.line(&format!("  \"{}\" (line {}): {}", printable(&rule.name), rule.line, silence(rule)))?;
+    }
+    console.line(&format!("\npictures:  {}\n           {}", report.pictures[0], report.pictures[1]))
+}
+
+/// A rule that fired, in its own line of the script.
+fn fired(plan: &Plan, rule: &RuleReasons) -> String {
+    let added = rule.added.map_or(String::new(), short);
+    let long = if rule.needed > 1 { format!(", having held for {} steps", rule.needed) } else { String::new() };
+    let what = if rule.name == "reward" { "fn reward".to_owned() } else { format!("\"{}\"", printable(&rule.name)) };
+    let parts = rule.parts.iter().filter(|part| part.holds != Some(false));
+    let places: Vec<_> = parts.map(|part| (part.span[0]..part.span[1], facts(&part.facts))).collect();
+    let colour = std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
+    excerpt(&format!("{what} added {added}{long}"), plan.behaviour.source(), &places, colour)
+}
+
+fn facts(facts: &[engine::experiment::FactReasons]) -> String {
+    if facts.is_empty() {
+        return "this held".to_owned();
+    }
+    facts.iter().map(fact).collect::<Vec<_>>().join("; ")
+}
+
+fn silence(rule: &RuleReasons) -> String {
+    if !rule.asked {
+        return "not asked, the step had ended with recovery".to_owned();
+    }
+    let parts: Vec<String> =
+        rule.parts.iter().filter(|part| !part.facts.is_empty()).map(|part| facts(&part.facts)).collect();
+    let held = match (rule.held, rule.needed) {
+        (_, 0 | 1) => String::new(),
+        (held, needed) => format!("held for {held} of {needed} steps; "),
+    };
+    format!("{held}{}", parts.join("; "))
+}

@@ -1,0 +1,199 @@
+//! `engine filter`: photographs seen as a behaviour's filters see them, and whether training met their states.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use engine::diagnostic::{Diagnostic, Kind, Result, printable};
+use engine::experiment::{Overrides, Plan};
+use engine::filter::{Catalogue, Chain};
+use engine::learner::Policy;
+use engine::sensors::observation::Image;
+use engine::sensors::{load_photograph, photograph_files};
+use engine::settings::Settings;
+use engine::state::Grid;
+use insight::report::{FrameData, FramePanel, Picture, frame};
+use insight::store::{Decider, StoredRun};
+use pack::Runnable;
+
+use super::behaviour::open_to_look;
+use super::folder::create;
+use crate::cli::FilterArguments;
+use crate::console::{Console, ConsoleError};
+
+/// What is told of one photograph.
+#[derive(serde::Serialize)]
+struct Seen {
+    file: String,
+    state: usize,
+    /// Filled cells of each column, from the left.
+    columns: Vec<usize>,
+    picture: String,
+    /// How often training met the state; only with `--run`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    visits: Option<u64>,
+    /// Whether training never met the state; only with `--run`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    new: Option<bool>,
+}
+
+pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
+    let overrides = Overrides { world: None, steps: None, test_steps: None, set: arguments.set.clone() };
+    // A pack's filters stand in a folder that lives as long as it does.
+    let Runnable { plan, unpacked: _unpacked, .. } =
+        open_to_look(&arguments.behaviour, &overrides, &arguments.filters, false)?;
+    if !plan.settings.policies.is_empty() {
+        let message = format!("'{}' combines policies, and each sees with filters of its own", plan.behaviour.name());
+        let error = Diagnostic::new(Kind::Usage, "E-POLICY", message).help("give the script of one of its policies");
+        return Err(Box::new(error).into());
+    }
+    let met = arguments.run.as_deref().map(|run| met(run, &plan)).transpose()?;
+    let files = photograph_files(&arguments.image)?;
+    let out = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(plan.behaviour.name()).join("filter"));
+    create(&out)?;
+    keep_photographs(&files, &out)?;
+    let (mut chain, mut grid) = (plan.chain()?, plan.grid()?);
+    let mut names = Vec::with_capacity(files.len());
+    let mut all = Vec::with_capacity(files.len());
+    for file in &files {
+        let camera = &plan.settings.camera;
+        let image = load_photograph(file, camera.width_px as usize, camera.height_px as usize)?;
+        let state = grid.encode(chain.apply(&image).map_err(|error| failed(file, &error.message))?);
+        let name = unused(file, &names);
+        draw(file, &image, &chain, &grid, state)?.write(&out, &name)?;
+        let visits = met.as_ref().map(|policy| visits(policy, state));
+        let seen = Seen {
+            file: file.display().to_string(),
+            state,
+            columns: columns(&grid, state),
+            picture: out.join(format!("{name}.png")).display().to_string(),
+            visits,
+            new: visits.map(|visits| visits == 0),
+        };
+        print(console, &seen)?;
+        names.push(name);
+        all.push(seen);
+    }
+    console.json(&all)?;
+    console.line(&format!("pictures: {}", out.display()))?;
+    if met.is_none() {
+        return Ok(0);
+    }
+    let share = all.iter().filter(|seen| seen.new == Some(true)).count() as f64 / all.len() as f64;
+    console.line(&format!("new:      {:.0} % of {} images show a state never met", 100.0 * share, all.len()))?;
+    if share <= arguments.new_share {
+        return Ok(0);
+    }
+    console.line(&format!(
+        "warning:  more than {:.0} %: training did not see what these images show",
+        100.0 * arguments.new_share
+    ))?;
+    Ok(1)
+}
+
+/// What a stored run learned, if it sees as this plan does.
+fn met(run: &Path, plan: &Plan) -> Result<Policy> {
+    let stored = StoredRun::load_with(run, Arc::clone(&plan.filters))?;
+    let (own, wanted) = (&stored.plan.settings, &plan.settings);
+    let shown = printable(&run.display().to_string());
+    let unfit = |message: String, help: &str| Diagnostic::new(Kind::State, "E-POLICY", message).help(help).into();
+    let Decider::Learned(policy) = stored.decider else {
+        return unfit(format!("'{shown}' combined policies and met no states itself"), "give the run of one of them");
+    };
+    let differs = if eyes(own, &plan.filters) != eyes(wanted, &plan.filters) {
+        "other filters"
+    } else if own.grid != wanted.grid {
+        "another grid"
+    } else if (own.camera.width_px, own.camera.height_px) != (wanted.camera.width_px, wanted.camera.height_px) {
+        "another size of image"
+    } else {
+        return Ok(policy);
+    };
+    let message = format!("'{shown}' was learned with {differs} than '{}' has", plan.behaviour.name());
+    unfit(message, "its states mean something else; give its own script, and --set as it was learned with")
+}
+
+/// Every filter with the value of each of its parameters, given or not.
+fn eyes<'a>(settings: &'a Settings, filters: &Catalogue) -> Vec<(&'a str, Vec<f64>)> {
+    let value = |given: &[(String, f64)], name: &str, default: f64| {
+        given.iter().find(|(key, _)| key == name).map_or(default, |(_, value)| *value)
+    };
+    let values = |name: &str, given: &[(String, f64)]| -> Vec<f64> {
+        let parameters = filters.find(name).map_or(&[][..], |entry| entry.descriptor.parameters);
+        parameters.iter().map(|parameter| value(given, parameter.name, parameter.default)).collect()
+    };
+    if settings.filters.is_empty() {
+        return vec![("sobel", values("sobel", &[]))];
+    }
+    settings.filters.iter().map(|filter| (filter.name.as_str(), values(&filter.name, &filter.parameters))).collect()
+}
+
+fn visits(policy: &Policy, state: usize) -> u64 {
+    policy.rows().get(state).and_then(Option::as_ref).map_or(0, |row| row.visits)
+}
+
+/// Refuses a folder for pictures from which a photograph was taken: it could be overwritten.
+fn keep_photographs(files: &[PathBuf], out: &Path) -> Result<()> {
+    let folder = |path: &Path| path.canonicalize().ok();
+    let inside = |file: &PathBuf| folder(file).is_some_and(|file| file.parent() == folder(out).as_deref());
+    if !files.iter().any(inside) {
+        return Ok(());
+    }
+    let message = format!("the pictures could overwrite photographs in '{}'", printable(&out.display().to_string()));
+    Diagnostic::new(Kind::Usage, "E-OUT", message).help("choose another folder: --out DIR").into()
+}
+
+/// The photograph's name without its ending, with a number behind it where another one has it.
+fn unused(file: &Path, names: &[String]) -> String {
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let free = |name: &String| !names.contains(name);
+    if free(&stem) {
+        return stem;
+    }
+    (2..).map(|number: usize| format!("{stem}-{number}")).find(free).unwrap_or(stem)
+}
+
+fn draw(file: &Path, image: &Image, chain: &Chain, grid: &Grid, state: usize) -> Result<Picture> {
+    let mut panels = vec![FramePanel::image("photograph", image)];
+    panels.extend(chain.stages().map(|(filter, pixels)| FramePanel {
+        name: filter.name,
+        format: filter.writes,
+        pixels,
+    }));
+    let (rows, columns) = grid.size();
+    let shares: Vec<f32> =
+        grid.counts().iter().enumerate().map(|(cell, count)| *count as f32 / grid.area_px(cell) as f32).collect();
+    let title = printable(&file.file_name().unwrap_or_default().to_string_lossy());
+    frame(&FrameData {
+        title: &title,
+        width_px: image.width_px,
+        height_px: image.height_px,
+        panels: &panels,
+        rows,
+        columns,
+        shares: &shares,
+        occupied: grid.occupied(),
+        filled: &grid.cells(state),
+        state,
+    })
+}
+
+fn columns(grid: &Grid, state: usize) -> Vec<usize> {
+    let (_, columns) = grid.size();
+    let cells = grid.cells(state);
+    (0..columns).map(|column| cells.iter().skip(column).step_by(columns).filter(|cell| **cell).count()).collect()
+}
+
+fn print(console: &mut Console, seen: &Seen) -> std::result::Result<(), ConsoleError> {
+    let digits: Vec<String> = seen.columns.iter().map(ToString::to_string).collect();
+    let met = match seen.visits {
+        None => String::new(),
+        Some(0) => ", new".to_owned(),
+        Some(visits) => format!(", met {visits} times"),
+    };
+    console.line(&format!("{}: state {}, columns {}{met}", printable(&seen.file), seen.state, digits.join(" ")))
+}
+
+fn failed(file: &Path, reason: &str) -> Box<Diagnostic> {
+    let message = format!("a filter failed on '{}': {}", printable(&file.display().to_string()), printable(reason));
+    Box::new(Diagnostic::new(Kind::Input, "E-FILTER", message))
+}

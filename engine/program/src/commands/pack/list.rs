@@ -1,0 +1,79 @@
+//! `engine pack list` and `remove`: what is installed.
+
+use std::path::Path;
+
+use engine::diagnostic::Result;
+use insight::report::write_atomic;
+use pack::{Card, Locked, Pack, Signature, gallery, signature_line};
+use serde_json::json;
+
+use super::super::folder::create;
+use super::fetch::{load, offers_in};
+use super::inspect::key_shown;
+use super::places::Places;
+use crate::cli::{ListArguments, RemoveArguments};
+use crate::console::{Console, ConsoleError};
+
+/// A pack of the list.
+struct Listed {
+    pack: Pack,
+    signature: Option<Signature>,
+}
+
+pub(super) fn list(arguments: &ListArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
+    let places = Places::find()?;
+    let listed = match &arguments.from {
+        Some(folder) => in_folder(folder)?,
+        None => installed(&places)?,
+    };
+    let trust = places.trust()?;
+    let mut rows = Vec::new();
+    let mut cards = Vec::new();
+    for Listed { pack, signature } in &listed {
+        let signed = signature_line(&trust, pack, signature.as_ref());
+        let manifest = pack.manifest();
+        rows.push(json!({
+            "name": manifest.name, "version": manifest.version, "description": manifest.description,
+            "content": pack.content(), "signature": signed.text, "trusted": signed.trusted,
+        }));
+        console.line(&format!("{:32} {}", pack.title(), signed.text))?;
+        cards.push(Card { pack, signed });
+    }
+    if listed.is_empty() {
+        console.line("there are no packs; get one with: engine pack install FILE.pack")?;
+    }
+    console.json(&rows)?;
+    if let Some(folder) = &arguments.gallery {
+        create(folder)?;
+        let path = folder.join("index.html");
+        write_atomic(&path, gallery(&cards)?.as_bytes())?;
+        console.line(&format!("gallery:   {}", path.display()))?;
+    }
+    Ok(0)
+}
+
+fn in_folder(folder: &Path) -> Result<Vec<Listed>> {
+    let offers = offers_in(folder)?;
+    let listed = |path: &Path| load(path).map(|fetched| Listed { pack: fetched.pack, signature: fetched.signature });
+    offers.iter().map(|(path, _)| listed(path)).collect()
+}
+
+fn installed(places: &Places) -> Result<Vec<Listed>> {
+    let shelf = places.shelf();
+    let listed = |locked: &Locked| Ok(Listed { pack: shelf.get(locked)?, signature: shelf.signature(locked.content)? });
+    places.index()?.packs().iter().map(listed).collect()
+}
+
+pub(super) fn remove(arguments: &RemoveArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
+    let places = Places::find()?;
+    let (lock, index) = (places.lock()?, places.index()?);
+    let named = index.find(&arguments.name).or_else(|error| lock.find(&arguments.name).map_err(|_| error))?;
+    let (name, shelf) = (named.name.clone(), places.shelf());
+    for locked in [lock.get(&name), index.get(&name)].into_iter().flatten() {
+        shelf.remove(locked.content)?;
+    }
+    places.change(|lock| lock.take(&name))?;
+    console.json(&json!({ "removed": name }))?;
+    console.line(&format!("removed:   {name} {}, key {}", named.version, key_shown(named.key.as_deref())))?;
+    Ok(0)
+}

@@ -1,0 +1,310 @@
+//! `engine replay`: a recorded run again, step by step; with `--verify`, from its seed alone.
+
+use std::sync::atomic::Ordering;
+
+use engine::diagnostic::{Diagnostic, Kind, Result, printable};
+use engine::experiment::{
+    Cycle, Ledger, Overrides, Phase, Plan, Playback, Record, RuleScore, Step, learn_into, test_combined, test_into,
+};
+use engine::learner::Carry;
+use engine::robot::SimulatedRobot;
+use insight::store::{Decider, RecordedRun, RunLog, StoredRun};
+use serde::Serialize;
+
+use super::sources::catalogue;
+use super::stop::{INTERRUPTED, on_ctrl_c};
+use super::words::{direction, motion, short};
+use crate::cli::ReplayArguments;
+use crate::console::{Console, ConsoleError};
+
+/// Steps that are listed if no end is named.
+const LISTED: usize = 20;
+
+#[derive(Serialize)]
+struct Report {
+    behaviour: String,
+    world: String,
+    seed: u64,
+    /// `learning` or `test`.
+    phase: &'static str,
+    /// Steps that were done, and how many of them, from the first, are in the log.
+    steps: u64,
+    kept: usize,
+    /// Where the reward was swapped while the robot learned.
+    swaps: Vec<SwapEntry>,
+    rules: Vec<RuleEntry>,
+    listed: Vec<StepEntry>,
+}
+
+#[derive(Serialize)]
+struct SwapEntry {
+    /// The first step under the new reward.
+    step: u64,
+    /// What became of the table: `keep`, `decay` or `reset`.
+    table: Carry,
+}
+
+#[derive(Serialize)]
+struct RuleEntry {
+    name: String,
+    #[serde(flatten)]
+    score: RuleScore,
+    first_step: Option<usize>,
+    last_step: Option<usize>,
+}
+
+#[derive(Serialize)]
+struct StepEntry {
+    step: usize,
+    state: u32,
+    action: u16,
+    motion: [f64; 2],
+    next_state: u32,
+    reward: f64,
+    rules: Vec<(String, f64)>,
+    recover: bool,
+    explored: bool,
+    contact: bool,
+    beam: Option<u16>,
+    beam_angle_deg: Option<f64>,
+    nearest_m: f32,
+    pose: [f64; 3],
+}
+
+#[derive(Serialize)]
+struct Verified {
+    behaviour: String,
+    seed: u64,
+    reproduced: bool,
+    learning_steps: u64,
+    test_steps: u64,
+    log_sha256: String,
+    state_hash: String,
+}
+
+pub(crate) fn run(arguments: &ReplayArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
+    let recorded = RecordedRun::load(&arguments.run, catalogue(&arguments.filters)?)?;
+    if arguments.verify {
+        return verify(&recorded, console);
+    }
+    let RecordedRun { stored: StoredRun { plan, seed, .. }, log, .. } = &recorded;
+    let (phase, ledger, name) = match arguments.test {
+        false => (Phase::Learning, &log.learning, "learning"),
+        true => (Phase::Test, &log.test, "test"),
+    };
+    let listed = listed(arguments, ledger, name)?;
+    play(plan, *seed, phase, ledger, name)?;
+    let report = Report {
+        behaviour: plan.behaviour.name().to_owned(),
+        world: plan.layout.name.clone(),
+        seed: *seed,
+        phase: name,
+        steps: ledger.steps(),
+        kept: ledger.len(),
+        swaps: swaps(plan, phase),
+        rules: rules(plan, phase, ledger),
+        listed: listed.filter_map(|step| entry(plan_of(plan, phase, step), ledger, step)).collect(),
+    };
+    console.json(&report)?;
+    print(console, &report)?;
+    Ok(0)
+}
+
+fn listed(arguments: &ReplayArguments, ledger: &Ledger, name: &str) -> Result<std::ops::Range<usize>> {
+    let Some(from) = arguments.from else { return Ok(0..0) };
+    let to = arguments.to.unwrap_or(from.saturating_add(LISTED - 1).min(ledger.len().saturating_sub(1)));
+    if from < ledger.len() && from <= to && to < ledger.len() {
+        return Ok(from..to + 1);
+    }
+    let message = format!("there are no steps {from} to {to}: the log has {} steps of {name}", ledger.len());
+    Diagnostic::new(Kind::Usage, "E-LOG-STEP", message).help("steps are counted from 0").into()
+}
+
+/// Plays every recorded action and compares every step.
+fn play(plan: &Plan, seed: u64, phase: Phase, ledger: &Ledger, name: &str) -> Result<()> {
+    let mut playback = Playback::new(plan, seed, phase, ledger)?;
+    while let Some(step) = playback.advance()? {
+        if let Some(field) = playback.difference() {
+            return differs(&format!("step {} of {name}: {field}", step.index)).into();
+        }
+    }
+    Ok(())
+}
+
+fn differs(what: &str) -> Diagnostic {
+    Diagnostic::new(Kind::State, "E-LOG-DIFFERS", format!("the run does not come out as it was recorded: {what}"))
+        .help("this engine, or a filter, is not the one that recorded the run: compare 'engine' in run.toml")
+}
+
+fn swaps(plan: &Plan, phase: Phase) -> Vec<SwapEntry> {
+    let swaps = plan.swaps().filter(|_| phase == Phase::Learning);
+    swaps.map(|(step, table, ..)| SwapEntry { step, table }).collect()
+}
+
+/// The plan under which a step was done.
+fn plan_of(plan: &Plan, phase: Phase, step: usize) -> &Plan {
+    match phase {
+        Phase::Learning => plan.leg_of(step as u64),
+        Phase::Test => plan,
+    }
+}
+
+fn rules(plan: &Plan, phase: Phase, ledger: &Ledger) -> Vec<RuleEntry> {
+    let entry = |name: String| RuleEntry { name, score: RuleScore::default(), first_step: None, last_step: None };
+    let mut rules: Vec<RuleEntry> = plan.rule_names().into_iter().map(entry).collect();
+    for step in 0..ledger.len() {
+        for (rule, value) in ledger.fired(step) {
+            let name = &plan_of(plan, phase, step).behaviour.rules()[rule].name;
+            let Some(entry) = rules.iter_mut().find(|entry| entry.name == *name) else { continue };
+            let RuleEntry { score, first_step, last_step, .. } = entry;
+            score.fired += 1;
+            score.total += value;
+            first_step.get_or_insert(step);
+            *last_step = Some(step);
+        }
+    }
+    rules
+}
+
+fn entry(plan: &Plan, ledger: &Ledger, step: usize) -> Option<StepEntry> {
+    let Record { state, next_state, action, reward, recover, explored, contact, beam, nearest_m, pose, .. } =
+        ledger.record(step)?;
+    let twist = plan.settings.actions.get(usize::from(action))?;
+    let name = |rule: usize| plan.behaviour.rules()[rule].name.clone();
+    let beams = plan.settings.laser.beams as usize;
+    Some(StepEntry {
+        step,
+        state,
+        action,
+        motion: [twist.linear_m_per_s, twist.angular_rad_per_s],
+        next_state,
+        reward,
+        rules: ledger.fired(step).map(|(rule, value)| (name(rule), value)).collect(),
+        recover,
+        explored,
+        contact,
+        beam,
+        beam_angle_deg: beam.map(|beam| engine::experiment::beam_angle_deg(usize::from(beam), beams)),
+        nearest_m,
+        pose: [pose.x_m, pose.y_m, pose.yaw_rad],
+    })
+}
+
+fn print(console: &mut Console, report: &Report) -> std::result::Result<(), ConsoleError> {
+    let Report { behaviour, world, seed, phase, steps, kept, .. } = report;
+    console.line(&format!("behaviour: {behaviour} in {world}, seed {seed}"))?;
+    let of = if *steps == *kept as u64 { String::new() } else { format!(" of {steps}") };
+    console.line(&format!("played:    {kept}{of} steps of {phase}; each is the recorded one, bit for bit"))?;
+    for SwapEntry { step, table } in &report.swaps {
+        console.line(&format!("swapped:   the reward before step {step}; of the table: {}", table.name()))?;
+    }
+    console.line(&format!("{:20} {:>8} {:>10} {:>8} {:>8}", "rule", "fired", "total", "first", "last"))?;
+    let step = |step: Option<usize>| step.map_or("-".to_owned(), |step| step.to_string());
+    for RuleEntry { name, score, first_step, last_step } in &report.rules {
+        console.line(&format!(
+            "{:20} {:>8} {:>10} {:>8} {:>8}",
+            printable(name),
+            score.fired,
+            short(score.total),
+            step(*first_step),
+            step(*last_step)
+        ))?;
+    }
+    if report.listed.is_empty() {
+        return console
+            .line("steps:     list them with --from N --to N; the reasons of one: engine explain RUN --step N");
+    }
+    console.line(&format!("{:>6} {:>6} {:>6}  {:28} {:>7}  because", "step", "state", "next", "action", "reward"))?;
+    for step in &report.listed {
+        console.line(&format!(
+            "{:>6} {:>6} {:>6}  {:28} {:>7}  {}",
+            step.step,
+            step.state,
+            step.next_state,
+            motion(step.motion),
+            short(step.reward),
+            because(step)
+        ))?;
+    }
+    Ok(())
+}
+
+fn because(step: &StepEntry) -> String {
+    let rules: Vec<String> = step.rules.iter().map(|(name, _)| format!("\"{}\"", printable(name))).collect();
+    let beam = step.beam.zip(step.beam_angle_deg);
+    let beam = beam.map_or(String::new(), |(beam, angle)| format!(", beam {beam}, {}", direction(angle)));
+    let recover = if step.recover { ", then recover" } else { "" };
+    format!("{}{beam}{recover}", rules.join(" and "))
+}
+
+/// Learns and tests again from the seed alone.
+fn verify(recorded: &RecordedRun, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
+    let RecordedRun { stored, log, summary } = recorded;
+    let (plan, seed) = (&stored.plan, stored.seed);
+    let stop = on_ctrl_c()?;
+    // A run that was stopped is done again as far as it came; one that a failure ended, until it fails again.
+    let steps = match summary {
+        Some(_) => Overrides {
+            steps: Some(log.learning.last_leg().0),
+            test_steps: Some(log.test.steps()),
+            ..Overrides::default()
+        },
+        None => Overrides::default(),
+    };
+    let plan = plan.clone().with_changes(&steps)?;
+    let mut again = RunLog::new(&plan);
+    let state_hash = match &stored.decider {
+        Decider::Learned(policy) => {
+            let learned = learn_into(&plan, seed, &stop, &|_| (), &mut again.learning)?;
+            if summary.is_some() {
+                test_into(&plan, &learned.policy, seed, &stop, &mut again.test)?;
+            }
+            if stop.load(Ordering::Relaxed) {
+                return Ok(INTERRUPTED);
+            }
+            compare(log, &again)?;
+            if learned.policy != *policy {
+                return Err(Box::new(differs("the table in policy.toml")).into());
+            }
+            learned.state_hash
+        }
+        Decider::Combined(members) => {
+            let mut keep = |cycle: &Cycle<SimulatedRobot>, step: &Step| again.test.add(cycle, step, false);
+            let tested = test_combined(&plan, members, seed, &stop, &mut keep)?;
+            if stop.load(Ordering::Relaxed) {
+                return Ok(INTERRUPTED);
+            }
+            compare(log, &again)?;
+            tested.run.state_hash
+        }
+    };
+    if summary.as_ref().is_some_and(|summary| state_hash != summary.state_hash) {
+        return Err(Box::new(differs("state_hash in summary.json")).into());
+    }
+    let verified = Verified {
+        behaviour: plan.behaviour.name().to_owned(),
+        seed,
+        reproduced: true,
+        learning_steps: log.learning.steps(),
+        test_steps: log.test.steps(),
+        log_sha256: again.sha256(),
+        state_hash,
+    };
+    console.json(&verified)?;
+    console.line(&format!(
+        "reproduced bit for bit: {} steps of learning and {} of the test",
+        verified.learning_steps, verified.test_steps
+    ))?;
+    console.line(&format!("log:       sha256 {}", verified.log_sha256))?;
+    console.line(&format!("state:     sha256 {}", verified.state_hash))?;
+    Ok(0)
+}
+
+fn compare(log: &RunLog, again: &RunLog) -> Result<()> {
+    for (name, old, new) in [("learning", &log.learning, &again.learning), ("the test", &log.test, &again.test)] {
+        if let Some((step, field)) = old.first_difference(new) {
+            return differs(&format!("step {step} of {name}: {field}")).into();
+        }
+    }
+    Ok(())
+}

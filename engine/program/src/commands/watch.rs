@@ -1,0 +1,149 @@
+//! `engine watch`: learns again on every save, and shows the result on a page in the browser, or in the terminal.
+
+use crate::cli::WatchArguments;
+use crate::console::{Console, ConsoleError};
+
+#[cfg(not(feature = "serve"))]
+pub(crate) fn run(arguments: &WatchArguments, _: &mut Console) -> Result<u8, ConsoleError> {
+    use engine::diagnostic::{Diagnostic, Kind};
+    let message = "this program was built without the live page";
+    let error = Diagnostic::new(Kind::Usage, "E-WATCH-FEATURE", message);
+    let feature = if arguments.tui { "tui" } else { "serve" };
+    Err(Box::new(error.help(format!("build it in: cargo build --release --features {feature}"))).into())
+}
+
+#[cfg(feature = "serve")]
+pub(crate) fn run(arguments: &WatchArguments, console: &mut Console) -> Result<u8, ConsoleError> {
+    use engine::experiment::Overrides;
+    use std::sync::Arc;
+    use watch::{Board, Relearner, WatchSettings, listen};
+
+    #[cfg(feature = "tui")]
+    if arguments.tui {
+        watch::terminal::require()?;
+    }
+    #[cfg(not(feature = "tui"))]
+    if arguments.tui {
+        return Err(without_terminal());
+    }
+    let (world, set) = (arguments.world.clone(), arguments.set.clone());
+    let overrides = Overrides { world, steps: arguments.steps, test_steps: None, set };
+    // What is wrong from the start is said here; what is saved wrong later, on the page.
+    let sources = arguments.filters.clone();
+    engine::experiment::Plan::load(&arguments.behaviour, &overrides, || super::sources::catalogue(&sources))?;
+    let stop = super::stop::on_ctrl_c()?;
+    let board = Arc::new(Board::default());
+    let keep = keep(arguments.keep.as_deref());
+    let name = arguments.behaviour.file_stem().unwrap_or_default();
+    let kept = || std::path::Path::new("runs").join(name).join("watch");
+    let out = arguments.out.clone().or_else(|| keep.map(|_| kept()));
+    let settings = WatchSettings {
+        behaviour: arguments.behaviour.clone(),
+        seeds: (0..arguments.seeds).map(|index| arguments.seed.wrapping_add(index)).collect(),
+        threads: arguments.threads.unwrap_or(0) as usize,
+        keep,
+        finished: out.clone().map(finished),
+        overrides,
+        filter_folders: sources.filter_dir.clone(),
+        filters: Box::new(move || super::sources::catalogue(&sources)),
+    };
+    let relearner = Relearner::new(settings, Arc::clone(&board));
+    let address = listen(Arc::clone(&board), relearner.asker(), arguments.port)?;
+    #[cfg(feature = "tui")]
+    if arguments.tui {
+        let status = in_terminal(relearner, &board, &address.url, &stop)?;
+        if let Some(out) = &out {
+            console.line(&format!("results:   {}", out.display()))?;
+        }
+        return Ok(status);
+    }
+    console.json(&serde_json::json!({ "address": address.url, "port": address.port }))?;
+    if address.port != arguments.port && arguments.port != 0 {
+        console.note(&format!("port {} is taken: the page is on port {}", arguments.port, address.port));
+    }
+    console.line(&format!("page:      {}", address.url))?;
+    console.line(&format!("watching:  {}; end with Ctrl-C", arguments.behaviour.display()))?;
+    if let Some(out) = &out {
+        console.line(&format!("results:   {}", out.display()))?;
+    }
+    console.finish()?;
+    if !arguments.no_open {
+        open(&address.url);
+    }
+    relearner.serve(&stop)?;
+    Ok(0)
+}
+
+/// The command line allows no other words.
+#[cfg(feature = "serve")]
+fn keep(word: Option<&str>) -> Option<engine::learner::Carry> {
+    let word = word?;
+    engine::learner::Carry::ALL.into_iter().find(|(name, _)| *name == word).map(|(_, carry)| carry)
+}
+
+/// Writes every finished run to a folder.
+#[cfg(feature = "serve")]
+fn finished(out: std::path::PathBuf) -> watch::Finished {
+    use super::folder::{RunFolder, SeedResult};
+    use engine::experiment::Summary;
+    use insight::store::RunLog;
+    Box::new(move |run, tests, seconds| {
+        let (plan, many) = (&run.plan, run.seeds.len() > 1);
+        let Some(first) = run.seeds.first() else { return Ok(()) };
+        let folder = RunFolder::create(&out, plan, &[], first.learned.seed)?;
+        let result = |(seed, tested): (&watch::SeedRun, engine::experiment::TestRun)| {
+            let mut summary =
+                Summary::new(plan, &seed.learned, tested.figures.clone(), seconds / run.seeds.len() as f64);
+            let log = RunLog { learning: (*seed.learning).clone(), test: seed.tested.clone() };
+            summary.log_sha256 = Some(log.sha256());
+            folder.keep_log(plan, seed.learned.seed, &log, many)?;
+            Ok(SeedResult { learned: (*seed.learned).clone(), tested, summary, log: (!many).then_some(log) })
+        };
+        let results = run.seeds.iter().zip(tests).map(result).collect::<engine::diagnostic::Result<Vec<_>>>()?;
+        folder.write(plan, &results, None)
+    })
+}
+
+/// Learns on this thread and shows it on another; whichever ends, ends the other.
+#[cfg(feature = "tui")]
+fn in_terminal(
+    relearner: watch::Relearner,
+    board: &watch::Board,
+    url: &str,
+    stop: &std::sync::Arc<std::sync::atomic::AtomicBool>,
+) -> Result<u8, ConsoleError> {
+    use std::sync::atomic::{AtomicBool, Ordering};
+
+    /// Learning may end by a panic: the terminal must not go on alone.
+    struct Ended<'a>(&'a AtomicBool);
+    impl Drop for Ended<'_> {
+        fn drop(&mut self) {
+            self.0.store(true, Ordering::Relaxed);
+        }
+    }
+    let asker = relearner.asker();
+    std::thread::scope(|scope| {
+        let shown = scope.spawn(|| watch::terminal::show(board, &asker, url, stop));
+        let ended = Ended(stop);
+        let served = relearner.serve(stop);
+        drop(ended);
+        let shown = shown.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        served.and(shown).map(|()| 0).map_err(ConsoleError::from)
+    })
+}
+
+#[cfg(all(feature = "serve", not(feature = "tui")))]
+fn without_terminal() -> ConsoleError {
+    use engine::diagnostic::{Diagnostic, Kind};
+    let error = Diagnostic::new(Kind::Usage, "E-WATCH-TUI", "this program was built without the terminal's live view");
+    ConsoleError::Failed(Box::new(error.help("build it in: cargo build --release --features tui")))
+}
+
+/// Opens the browser if there is one; the address is printed anyhow.
+#[cfg(feature = "serve")]
+fn open(url: &str) {
+    use std::process::{Command, Stdio};
+    let program = if cfg!(target_os = "macos") { "open" } else { "xdg-open" };
+    let quiet = Command::new(program).arg(url).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
+    drop(quiet);
+}

@@ -1,0 +1,257 @@
+//! What the page and the terminal are told: the last good run, the error after it, what is being done. Written by the one
+//! thread that learns, read by the server and the terminal; nobody waits for a reader.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use serde::Serialize;
+use tokio::sync::watch;
+
+use engine::diagnostic::{Diagnostic, Result, Severity};
+use engine::experiment::{Learned, Ledger, Plan, TestFigures};
+use insight::lint::Report;
+use insight::page::{Checked, Document, Finding, SeedData, SeedView};
+
+/// One seed of a run.
+#[derive(Debug)]
+pub struct SeedRun {
+    /// What it learned; of a behaviour that combines policies nothing, in no steps.
+    pub learned: Arc<Learned>,
+    /// Steps of learning.
+    pub learning: Arc<Ledger>,
+    /// The test's figures, once it is done.
+    pub test: Option<TestFigures>,
+    /// Steps of the test.
+    pub tested: Ledger,
+}
+
+impl SeedRun {
+    /// The seed as the page's room reads it.
+    #[must_use]
+    pub fn data(&self) -> SeedData<'_> {
+        // Of a behaviour that combines policies nothing was learned.
+        let learned = Some(&self.learned).filter(|learned| learned.steps > 0);
+        SeedData {
+            seed: self.learned.seed,
+            tally: learned.map(|learned| &learned.tally),
+            policy: learned.map(|learned| &learned.policy),
+            test: self.test.as_ref(),
+            learning: &self.learning,
+            tested: &self.tested,
+        }
+    }
+}
+
+/// A run that can be asked for its moments.
+pub struct SavedRun {
+    /// The number of the save, from 1.
+    pub save: u64,
+    /// The plan.
+    pub plan: Plan,
+    /// The seeds.
+    pub seeds: Vec<SeedRun>,
+}
+
+/// What one message to the page holds.
+#[derive(Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+enum Message<'a> {
+    Working { text: &'a str },
+    Failed { text: String, blocks: Vec<String>, summary: Option<String>, error: serde_json::Value },
+    Run { save: u64, done: bool, text: &'a str, document: &'a Document, before: Option<&'a Before> },
+    Checked { save: u64, findings: &'a [Finding], checked: &'a Checked },
+    Unchecked { save: u64, text: String },
+}
+
+/// What the page draws behind a new run: the run of the save before.
+#[derive(Debug, Clone, Serialize)]
+struct Before {
+    seeds: Vec<SeedView>,
+}
+
+/// What a reader inside this program is shown; cheap to copy.
+#[derive(Clone, Default)]
+pub struct Shown {
+    /// Grows with everything that is new.
+    pub number: u64,
+    /// The last good run.
+    pub run: Option<ShownRun>,
+    /// What is being done, or how the last run went.
+    pub text: Arc<str>,
+    /// Whether something is being learned or tested now.
+    pub busy: bool,
+    /// What is wrong with the last save, if it could not be learned.
+    pub error: Option<Arc<Diagnostic>>,
+}
+
+/// A run with what is drawn beside it.
+#[derive(Clone)]
+pub struct ShownRun {
+    /// The run.
+    pub run: Arc<SavedRun>,
+    /// The plan's side of its document: world, rules, findings; no seeds.
+    pub document: Arc<Document>,
+    /// The curves of the save before, one for each seed.
+    pub before: Option<Arc<[Vec<f64>]>>,
+}
+
+/// The messages that a page which comes now must get, oldest first; each with its number.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Posted {
+    pub messages: Vec<(u64, Arc<str>)>,
+}
+
+#[derive(Default)]
+struct Written {
+    number: u64,
+    run: Option<(u64, Arc<str>)>,
+    checked: Option<(u64, Arc<str>)>,
+    last: Option<(u64, Arc<str>)>,
+    saved: Option<Arc<SavedRun>>,
+    shown: Option<(u64, Before)>,
+    before: Option<Before>,
+    told: Shown,
+}
+
+impl Written {
+    fn tell(&mut self, run: &Arc<SavedRun>, done: bool, text: &str, document: &Document) {
+        let document = Arc::new(Document { seeds: Vec::new(), ..document.clone() });
+        let before = self.before.as_ref().map(|before| before.seeds.iter().map(|seed| seed.curve.clone()).collect());
+        let run = ShownRun { run: Arc::clone(run), document, before };
+        self.told = Shown { number: 0, run: Some(run), text: text.into(), busy: !done, error: None };
+    }
+}
+
+/// The board.
+pub struct Board {
+    written: Mutex<Written>,
+    news: watch::Sender<u64>,
+}
+
+impl Default for Board {
+    fn default() -> Self {
+        Self { written: Mutex::default(), news: watch::Sender::new(0) }
+    }
+}
+
+impl Board {
+    /// Says what is being done.
+    pub fn working(&self, text: &str) {
+        self.post(&Message::Working { text }, |told| (told.text, told.busy) = (text.into(), true));
+    }
+
+    /// Everything, if anything is newer than number `after`.
+    #[must_use]
+    pub fn shown(&self, after: u64) -> Option<Shown> {
+        let written = self.lock();
+        (written.number > after).then(|| Shown { number: written.number, ..written.told.clone() })
+    }
+
+    /// Says that a save could not be used, with each mistake as a block of text; the last good run stays.
+    pub fn failed(&self, error: &Diagnostic) {
+        let message = Message::Failed {
+            text: error.render(false),
+            blocks: error.all().map(|one| one.render_as(Severity::Error, false)).collect(),
+            summary: error.summary(),
+            error: error.to_json(),
+        };
+        self.post(&message, |told| (told.error, told.busy) = (Some(Arc::new(error.clone())), false));
+    }
+
+    /// Shows a run; `done` if its test is over too.
+    ///
+    /// # Errors
+    /// If the document cannot be written as JSON.
+    pub fn run(&self, run: &Arc<SavedRun>, done: bool, text: &str, document: &Document) -> Result<()> {
+        let views = |document: &Document| Before {
+            seeds: document
+                .seeds
+                .iter()
+                .map(|seed| SeedView { learning: None, tested: None, ..seed.clone() })
+                .collect(),
+        };
+        let mut written = self.lock();
+        match written.shown.take() {
+            Some((save, shown)) if save != run.save => written.before = Some(shown),
+            _ => {}
+        }
+        written.shown = Some((run.save, views(document)));
+        written.tell(run, done, text, document);
+        let before = written.before.as_ref();
+        let text = encode(&Message::Run { save: run.save, done, text, document, before })?;
+        written.number += 1;
+        written.run = Some((written.number, text));
+        (written.checked, written.last) = (None, None);
+        written.saved = Some(Arc::clone(run));
+        let number = written.number;
+        drop(written);
+        self.news.send_replace(number);
+        Ok(())
+    }
+
+    /// Says what a check of the shown run found.
+    pub(super) fn checked(&self, run: &SavedRun, report: &Report) {
+        let findings: Vec<Finding> = report.findings.iter().map(Finding::from).collect();
+        let checked = Checked::from(report);
+        if let Some(told) = self.lock().told.run.as_mut().filter(|told| told.run.save == run.save) {
+            let document = (*told.document).clone();
+            told.document =
+                Arc::new(Document { findings: findings.clone(), checked: Some(checked.clone()), ..document });
+        }
+        self.post_check(&Message::Checked { save: run.save, findings: &findings, checked: &checked });
+    }
+
+    /// Says that the check of the shown run ended early.
+    pub(super) fn unchecked(&self, run: &SavedRun, fault: &Diagnostic) {
+        self.post_check(&Message::Unchecked { save: run.save, text: fault.message.clone() });
+    }
+
+    fn post_check(&self, message: &Message<'_>) {
+        let Ok(text) = encode(message) else { return };
+        let mut written = self.lock();
+        written.number += 1;
+        written.checked = Some((written.number, text));
+        let number = written.number;
+        drop(written);
+        self.news.send_replace(number);
+    }
+
+    /// The run that is shown, if its save has this number.
+    pub(super) fn saved(&self, save: u64) -> Option<Arc<SavedRun>> {
+        self.lock().saved.clone().filter(|run| run.save == save)
+    }
+
+    /// What a page that knows all up to number `after` must get.
+    pub(super) fn posted(&self, after: u64) -> Posted {
+        let written = self.lock();
+        let all = [&written.run, &written.checked, &written.last].into_iter().flatten();
+        Posted { messages: all.filter(|(number, _)| *number > after).cloned().collect() }
+    }
+
+    /// Tells when there is something new.
+    pub(super) fn news(&self) -> watch::Receiver<u64> {
+        self.news.subscribe()
+    }
+
+    fn post(&self, message: &Message<'_>, tell: impl FnOnce(&mut Shown)) {
+        let Ok(text) = encode(message) else { return };
+        let mut written = self.lock();
+        tell(&mut written.told);
+        written.number += 1;
+        written.last = Some((written.number, text));
+        let number = written.number;
+        drop(written);
+        self.news.send_replace(number);
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Written> {
+        // Whoever panicked while writing left whole fields behind.
+        self.written.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+fn encode(message: &Message<'_>) -> Result<Arc<str>> {
+    let text = serde_json::to_string(message).map_err(|error| {
+        Box::new(Diagnostic::new(engine::diagnostic::Kind::Disk, "E-IO", format!("cannot write a message: {error}")))
+    })?;
+    Ok(text.into())
+}

@@ -1,0 +1,60 @@
+//! A behaviour that combines learned policies: each save tests the combination again. Nothing is learned, so that a run
+//! has no curve and no table of its own.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
+
+use super::board::SeedRun;
+use super::files::Files;
+use super::findings;
+use super::relearn::Relearner;
+use super::session::MOST_LEDGER_BYTES;
+use engine::diagnostic::{Diagnostic, Kind, Result};
+use engine::experiment::{
+    Cycle, Learned, Ledger, Member, Plan, RecordShape, Step, Tally, Trail, in_parallel, test_combined,
+};
+use engine::learner::Policy;
+use engine::robot::SimulatedRobot;
+use insight::store::{load_members, policy_files};
+
+/// Tests the combination with all seeds and shows it; its policies are watched from then on.
+pub(super) fn retest(again: &Relearner, plan: Plan, stop: &AtomicBool, files: &Mutex<Files>) -> Result<()> {
+    if again.settings.finished.is_some() {
+        let message = "this behaviour combines learned policies: nothing is learned that could be kept or written";
+        let error = Diagnostic::new(Kind::Input, "E-WATCH-POLICIES", message);
+        return error.help("leave out --keep and --out; engine run SCRIPT writes the folder of such a test").into();
+    }
+    let started = Instant::now();
+    files.lock().unwrap_or_else(PoisonError::into_inner).watch(policy_files(&plan))?;
+    let members = load_members(&plan)?;
+    let seeds = &again.settings.seeds;
+    let count = if seeds.len() == 1 { "one seed".to_owned() } else { format!("{} seeds", seeds.len()) };
+    let steps = plan.settings.run.test_steps;
+    again.board.working(&format!("testing {} policies as one, {count}, {steps} steps each", members.len()));
+    let room = MOST_LEDGER_BYTES / (seeds.len() * RecordShape::of(&plan).bytes()).max(1) as u64;
+    let tested = in_parallel(seeds, again.settings.threads, |seed| test(&plan, &members, seed, room, stop))?;
+    if stop.load(Ordering::Relaxed) {
+        return Ok(());
+    }
+    let tested_s = started.elapsed().as_secs_f64();
+    let text = format!("save {}: combined policies tested in {tested_s:.2} s", again.save);
+    let run = again.show(plan, tested, true, &text, None)?;
+    findings::tell(&again.board, &run, again.settings.threads, stop);
+    Ok(())
+}
+
+fn test(plan: &Plan, members: &[Member], seed: u64, room: u64, stop: &AtomicBool) -> Result<SeedRun> {
+    let mut tested = Ledger::new(plan, plan.settings.run.test_steps.min(room));
+    let mut keep = |cycle: &Cycle<SimulatedRobot>, step: &Step| tested.add(cycle, step, false);
+    let run = test_combined(plan, members, seed, stop, &mut keep)?.run;
+    let learned = Arc::new(nothing_learned(plan, seed));
+    Ok(SeedRun { learned, learning: Arc::new(Ledger::off()), test: Some(run.figures), tested })
+}
+
+/// No step of learning.
+fn nothing_learned(plan: &Plan, seed: u64) -> Learned {
+    let tally = Tally::new(plan.behaviour.rules().len(), 0);
+    let policy = Policy::new(plan.settings.actions.len(), Vec::new());
+    Learned { seed, steps: 0, tally, policy, early: Trail::default(), state_hash: String::new(), fault: None }
+}

@@ -1,0 +1,300 @@
+//! Learns again after each save, with all seeds: from nothing, and a newer save ends the older run; or, where what was
+//! learned is to be kept, on from there under the new reward.
+
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use super::board::{Board, SavedRun, SeedRun};
+use super::files::{Files, SETTLE};
+use super::session::Session;
+use super::{combined, findings};
+use engine::diagnostic::{Diagnostic, Result};
+use engine::experiment::{Ledger, Overrides, Plan, TestRun, WINDOW_STEPS, in_parallel, test_into};
+use engine::filter::Catalogue;
+use engine::learner::Carry;
+use insight::page::{Document, Moments};
+
+/// A save is often several writes; so long it must be quiet.
+const QUIET: Duration = Duration::from_millis(15);
+/// How often the end of the program is looked for.
+const GLANCE: Duration = Duration::from_millis(100);
+/// How often a run that is being learned is shown.
+const SHOWN_EVERY: Duration = Duration::from_secs(1);
+
+/// Called with every run that was learned and tested, its tests, and the seconds that both took.
+pub type Finished = Box<dyn Fn(&SavedRun, Vec<TestRun>, f64) -> Result<()> + Send>;
+
+/// What is watched and how it is learned.
+pub struct WatchSettings {
+    /// The script.
+    pub behaviour: PathBuf,
+    /// The seeds.
+    pub seeds: Vec<u64>,
+    /// Threads to learn with; 0 is one for each core.
+    pub threads: usize,
+    /// Whether a save that changes only the reward goes on with what was learned, and what becomes of the table then.
+    pub keep: Option<Carry>,
+    /// What is done with finished runs.
+    pub finished: Option<Finished>,
+    /// What the command line changes.
+    pub overrides: Overrides,
+    /// Folders of filters.
+    pub filter_folders: Vec<PathBuf>,
+    /// Makes the catalogue of filters anew, since a filter may have been saved.
+    pub filters: Box<dyn Fn() -> Result<Arc<Catalogue>> + Send>,
+}
+
+/// Why a run is asked for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Why {
+    /// A file was saved.
+    Saved,
+    /// Somebody wants it, from nothing.
+    Wanted,
+}
+
+/// Asks for another run; may be shared with the server.
+#[derive(Clone)]
+pub struct Asker {
+    sender: Sender<Why>,
+    running: Arc<Mutex<Arc<AtomicBool>>>,
+}
+
+impl Asker {
+    /// Another run, from nothing; the one that is running ends.
+    pub fn again(&self) {
+        self.ask(Why::Wanted);
+    }
+
+    fn ask(&self, why: Why) {
+        self.end_running();
+        // The one who listens is gone only when the program ends.
+        let _ = self.sender.send(why);
+    }
+
+    fn end_running(&self) {
+        self.running.lock().unwrap_or_else(PoisonError::into_inner).store(true, Ordering::Relaxed);
+    }
+}
+
+/// Learns after each save, on the thread that calls [`Relearner::serve`].
+pub struct Relearner {
+    pub(super) settings: WatchSettings,
+    pub(super) board: Arc<Board>,
+    asker: Asker,
+    asked: Receiver<Why>,
+    pub(super) save: u64,
+    /// What goes on with the next save.
+    session: Option<Session>,
+}
+
+impl Relearner {
+    /// Nothing is learned yet.
+    #[must_use]
+    pub fn new(settings: WatchSettings, board: Arc<Board>) -> Self {
+        let (sender, asked) = channel();
+        let asker = Asker { sender, running: Arc::default() };
+        Self { settings, board, asker, asked, save: 0, session: None }
+    }
+
+    /// Asks for runs from elsewhere.
+    #[must_use]
+    pub fn asker(&self) -> Asker {
+        self.asker.clone()
+    }
+
+    /// Learns now, and after each save, until `stop` is set.
+    ///
+    /// # Errors
+    /// If files cannot be watched; a script that is wrong is only said on the board.
+    pub fn serve(mut self, stop: &AtomicBool) -> Result<()> {
+        // Runs are ended from the thread that sees the save: this one is busy learning.
+        let (saves, seen) = channel();
+        let mut files = Files::new(move || {
+            let _ = saves.send(());
+        })?;
+        files.watch([self.settings.behaviour.clone()])?;
+        files.watch_filters(&self.settings.filter_folders)?;
+        let files = Arc::new(Mutex::new(files));
+        std::thread::scope(|scope| {
+            let (watched, asker) = (Arc::clone(&files), self.asker());
+            scope.spawn(move || follow(&seen, &watched, &asker, stop));
+            self.asker.again();
+            while !stop.load(Ordering::Relaxed) {
+                match self.asked.recv_timeout(GLANCE) {
+                    Ok(why) => self.asked_for(why, &files),
+                    Err(RecvTimeoutError::Timeout) => {}
+                    Err(RecvTimeoutError::Disconnected) => break,
+                }
+            }
+            Ok(())
+        })
+    }
+
+    fn asked_for(&mut self, why: Why, files: &Mutex<Files>) {
+        // All that was asked for until now is answered by what the files hold now.
+        let wanted = self.asked.try_iter().fold(why, |all, why| if why == Why::Wanted { why } else { all });
+        let flag = Arc::new(AtomicBool::new(false));
+        *self.asker.running.lock().unwrap_or_else(PoisonError::into_inner) = Arc::clone(&flag);
+        self.save += 1;
+        if let Err(error) = self.relearn(wanted, &flag, files)
+            && !flag.load(Ordering::Relaxed)
+        {
+            self.board.failed(&error);
+        }
+    }
+
+    fn relearn(&mut self, why: Why, stop: &AtomicBool, files: &Mutex<Files>) -> Result<()> {
+        let plan = self.plan(files);
+        if plan.as_ref().is_ok_and(|plan| !plan.settings.policies.is_empty()) {
+            self.session = None;
+            return combined::retest(self, plan?, stop, files);
+        }
+        let (mut session, error) = match plan.and_then(|plan| self.next_session(plan, why)) {
+            Ok(session) => (session, None),
+            // The robots go on with the last good script; the error stays in sight.
+            Err(error) => match self.session.take() {
+                Some(session) if !session.is_tested() => (session, Some(error)),
+                idle => {
+                    self.session = idle;
+                    return Err(error);
+                }
+            },
+        };
+        self.learn(&mut session, error.as_deref(), stop)?;
+        self.session = Some(session).filter(|_| self.settings.keep.is_some());
+        Ok(())
+    }
+
+    /// What this save learns: from nothing, or what was learned before under another reward.
+    fn next_session(&mut self, mut plan: Plan, why: Why) -> Result<Session> {
+        if self.settings.keep.is_some() {
+            // A window of the curve is of one reward only.
+            plan.settings.run.steps = plan.settings.run.steps.next_multiple_of(WINDOW_STEPS);
+        }
+        let mut note = String::new();
+        let kept = self.session.take().filter(|_| why == Why::Saved);
+        if let (Some(carry), Some(mut session)) = (self.settings.keep, kept) {
+            match plan.differs_beyond_reward(session.plan()) {
+                None => {
+                    session.swap(plan, carry)?;
+                    return Ok(session);
+                }
+                Some(what) => note = format!("{what} changed, so from nothing; "),
+            }
+        }
+        let whole = self.settings.keep.is_some() || self.settings.finished.is_some();
+        Session::new(plan, &self.settings.seeds, self.settings.threads, whole, note)
+    }
+
+    fn learn(&self, session: &mut Session, error: Option<&Diagnostic>, stop: &AtomicBool) -> Result<()> {
+        let (started, mut shown, mut pause) = (Instant::now(), Instant::now(), SHOWN_EVERY);
+        let (from, steps) = (session.done(), session.plan().learning_steps());
+        let seeds = match self.settings.seeds.len() {
+            1 => "one seed".to_owned(),
+            count => format!("{count} seeds"),
+        };
+        let note = session.note().to_owned();
+        self.say(&format!("{note}learning {seeds}, {} steps each", steps - from), error);
+        while !session.is_over() {
+            if stop.load(Ordering::Relaxed) {
+                return Ok(());
+            }
+            session.advance()?;
+            if shown.elapsed() >= pause && !session.is_over() {
+                let begun = Instant::now();
+                let text = format!("save {}: {note}step {} of {steps}", self.save, session.done());
+                self.show(session.plan().clone(), session.seeds(false)?, false, &text, error)?;
+                // Showing takes a tenth of the time at most.
+                (shown, pause) = (Instant::now(), SHOWN_EVERY.max(10 * begun.elapsed()));
+            }
+        }
+        if stop.load(Ordering::Relaxed) {
+            return Ok(());
+        }
+        let learned_s = started.elapsed().as_secs_f64();
+        let text = format!("save {}: {note}learned in {learned_s:.2} s", self.save);
+        let run = self.show(session.plan().clone(), session.seeds(true)?, false, &format!("{text}; testing"), error)?;
+        let tested = self.test(&run, session.room(), stop)?;
+        if stop.load(Ordering::Relaxed) {
+            return Ok(());
+        }
+        let (tests, ledgers): (Vec<TestRun>, Vec<Ledger>) = tested.into_iter().unzip();
+        let seeds = run.seeds.iter().zip(&tests).zip(ledgers).map(|((seed, test), tested)| SeedRun {
+            learned: Arc::clone(&seed.learned),
+            learning: Arc::clone(&seed.learning),
+            test: Some(test.figures.clone()),
+            tested,
+        });
+        let run = self.show(run.plan.clone(), seeds.collect(), true, &format!("{text}, tested"), error)?;
+        session.end();
+        if let Some(finished) = &self.settings.finished {
+            finished(&run, tests, started.elapsed().as_secs_f64())?;
+        }
+        findings::tell(&self.board, &run, self.settings.threads, stop);
+        Ok(())
+    }
+
+    fn test(&self, run: &SavedRun, room: u64, stop: &AtomicBool) -> Result<Vec<(TestRun, Ledger)>> {
+        let indices: Vec<u64> = (0..run.seeds.len() as u64).collect();
+        in_parallel(&indices, self.settings.threads, |index| {
+            let seed = &run.seeds[index as usize].learned;
+            let mut tested = Ledger::new(&run.plan, run.plan.settings.run.test_steps.min(room));
+            let test = test_into(&run.plan, &seed.policy, seed.seed, stop, &mut tested)?;
+            Ok((test, tested))
+        })
+    }
+
+    fn plan(&self, files: &Mutex<Files>) -> Result<Plan> {
+        let plan = Plan::load(&self.settings.behaviour, &self.settings.overrides, &self.settings.filters)?;
+        let world = plan.layout.source.path.clone();
+        files.lock().unwrap_or_else(PoisonError::into_inner).watch([world])?;
+        Ok(plan)
+    }
+
+    /// Says what is being done, or what is wrong with the script that was saved while it is done.
+    fn say(&self, text: &str, error: Option<&Diagnostic>) {
+        match error {
+            Some(error) => self.board.failed(error),
+            None => self.board.working(text),
+        }
+    }
+
+    pub(super) fn show(
+        &self,
+        plan: Plan,
+        seeds: Vec<SeedRun>,
+        done: bool,
+        text: &str,
+        error: Option<&Diagnostic>,
+    ) -> Result<Arc<SavedRun>> {
+        let data: Vec<_> = seeds.iter().map(SeedRun::data).collect();
+        let document = Document::new(&plan, &data, Moments { shots: 0, scans: done, seeds: Some(1) })?;
+        let run = Arc::new(SavedRun { save: self.save, plan, seeds });
+        self.board.run(&run, done, text, &document)?;
+        error.into_iter().for_each(|error| self.board.failed(error));
+        Ok(run)
+    }
+}
+
+/// Ends the running run and asks for the next one whenever a watched file has another content than before.
+fn follow(seen: &Receiver<()>, files: &Mutex<Files>, asker: &Asker, stop: &AtomicBool) {
+    let mut look_again = None;
+    while !stop.load(Ordering::Relaxed) {
+        match seen.recv_timeout(GLANCE) {
+            Ok(()) => while seen.recv_timeout(QUIET).is_ok() {},
+            Err(RecvTimeoutError::Timeout) if look_again.is_some_and(|due| Instant::now() >= due) => {}
+            Err(RecvTimeoutError::Timeout) => continue,
+            Err(RecvTimeoutError::Disconnected) => return,
+        }
+        let found = files.lock().unwrap_or_else(PoisonError::into_inner).look();
+        look_again = found.unfinished.then(|| Instant::now() + SETTLE);
+        if found.saved {
+            asker.ask(Why::Saved);
+        }
+    }
+    asker.end_running();
+}

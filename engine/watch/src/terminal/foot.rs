@@ -1,0 +1,140 @@
+//! What stands above and below the panels: which run, how it went, which step, the page's address, keys.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::text::{Line, Span};
+
+use super::ink::Ink;
+use super::keys::KEYS;
+use super::screen::{ends, heading, write, write_all};
+use super::view::{SPEEDS, View};
+use super::words::{columns, fit, short, signed, whole};
+use engine::experiment::{Phase, learned_at};
+
+/// Columns of the keys that are always named: help and quit.
+const LEAST_KEYS: usize = 16;
+
+/// Which behaviour, what is being done; how the seeds did.
+pub(super) fn head(view: &View, area: Rect, buffer: &mut Buffer) {
+    let name = match view.document() {
+        Some(document) => {
+            fit(&format!("{} in {}", document.behaviour, document.world.name), usize::from(area.width / 2))
+        }
+        None => "engine watch".to_owned(),
+    };
+    let status = status(view, usize::from(area.width).saturating_sub(columns(&name) + 2));
+    ends(vec![Span::styled(name, Ink::strong())], status, Rect { height: 1, ..area }, buffer);
+    let second = Rect { y: area.y + 1, height: 1, ..area };
+    write(&Line::from(figures(view, area.width >= 100)), second, buffer);
+}
+
+fn status(view: &View, width: usize) -> Line<'static> {
+    let text = fit(&view.shown.text, width);
+    if view.shown.busy {
+        Line::styled(text, view.ink.accent())
+    } else if view.shown.error.is_some() {
+        Line::styled(fit("the last save has a mistake", width), view.ink.bad())
+    } else {
+        Line::styled(text, Ink::quiet())
+    }
+}
+
+fn figures(view: &View, wide: bool) -> Vec<Span<'static>> {
+    let (Some(shown), Some(seed)) = (&view.shown.run, view.seed_run()) else { return Vec::new() };
+    let learned = |curve: Vec<f64>| learned_at(&curve);
+    let count = shown.run.seeds.iter().filter(|seed| learned(seed.learned.tally.curve()).is_some()).count();
+    let own = match learned(seed.learned.tally.curve()) {
+        Some(step) if wide => format!("learned at step {}", whole(step)),
+        Some(step) => format!("at step {}", whole(step)),
+        None => "not learned".to_owned(),
+    };
+    let number = seed.learned.seed;
+    // Combined policies learn nothing.
+    let mut spans = if seed.learned.steps == 0 {
+        vec![Span::styled(format!("seed {number}"), Ink::quiet())]
+    } else {
+        let all = Span::raw(format!("{count} of {} learned", shown.run.seeds.len()));
+        vec![all, Span::styled(format!(" · seed {number}: "), Ink::quiet()), Span::raw(own)]
+    };
+    if let Some(test) = &seed.test {
+        spans.push(Span::styled("; test: ", Ink::quiet()));
+        let unit = if wide { "failures per 1,000 steps" } else { "failures/1,000" };
+        spans.push(Span::raw(format!("{} {unit}", short(test.failures_per_1000))));
+        if let Some(laps) = test.laps {
+            spans.push(Span::raw(format!(", {} laps", short(laps))));
+        }
+        if wide {
+            spans.push(Span::raw(format!(", {} m/s", short(test.mean_speed))));
+        }
+    }
+    spans
+}
+
+/// The shown step; the page's address and as many keys as there is room for.
+pub(super) fn foot(view: &View, area: Rect, buffer: &mut Buffer) {
+    if view.record().is_some() {
+        ends(moment(view), Line::styled(playing(view), Ink::quiet()), Rect { height: 1, ..area }, buffer);
+    }
+    let all = usize::from(area.width);
+    // An address without its end is of no use; the help has it whole.
+    let fits = columns(&view.address) + 2 + LEAST_KEYS <= all;
+    let address = if fits { view.address.clone() } else { String::new() };
+    let room = all.saturating_sub(columns(&address) + 2);
+    let mut keys = Vec::new();
+    let mut used = 0;
+    for (key, name, _) in KEYS.iter().filter(|(_, name, _)| !name.is_empty()) {
+        let width = columns(key) + columns(name) + 3;
+        if used + width > room {
+            break;
+        }
+        used += width;
+        keys.splice(
+            0..0,
+            [Span::raw("  "), Span::styled(*key, Ink::strong()), Span::raw(" "), Span::styled(*name, Ink::quiet())],
+        );
+    }
+    let second = Rect { y: area.y + 1, height: 1, ..area };
+    ends(vec![Span::styled(address, Ink::quiet())], Line::from(keys), second, buffer);
+}
+
+fn playing(view: &View) -> String {
+    let speed = SPEEDS[view.speed - 1];
+    if view.playing { format!("playing, {speed}×") } else { format!("paused, {speed}×") }
+}
+
+fn moment(view: &View) -> Vec<Span<'static>> {
+    let (Some(record), Some(document)) = (view.record(), view.document()) else { return Vec::new() };
+    let phase = if view.phase == Phase::Learning { "learning" } else { "test" };
+    let time_s = (view.step + 1) as f64 * document.period_s;
+    let mut spans = vec![
+        Span::styled(format!("{phase}, step "), Ink::quiet()),
+        Span::raw(whole(view.step as u64)),
+        Span::styled(format!(" of {} · ", whole(view.story.steps)), Ink::quiet()),
+        Span::raw(format!("{time_s:.1} s")),
+        Span::styled(" · reward ", Ink::quiet()),
+        Span::raw(signed(record.reward)),
+    ];
+    for (event, word) in [(record.contact, "contact"), (record.fallen, "fallen"), (record.recover, "recovers")] {
+        if event {
+            spans.extend([Span::styled(" · ", Ink::quiet()), Span::styled(word, view.ink.bad())]);
+        }
+    }
+    spans
+}
+
+/// Every key in words.
+pub(super) fn help(view: &View, area: Rect, buffer: &mut Buffer) {
+    let inner = heading("Keys", Vec::new(), area, buffer);
+    let mut lines: Vec<Line<'_>> = KEYS
+        .iter()
+        .map(|(key, _, words)| Line::from(vec![Span::styled(format!("{key:>10}  "), Ink::strong()), Span::raw(*words)]))
+        .collect();
+    lines.push(Line::default());
+    let more = [
+        "Save the script, its world or its filters: all seeds learn again (--keep: on).",
+        "The page in a browser is at",
+    ];
+    lines.extend(more.map(|words| Line::styled(words, Ink::quiet())));
+    lines.push(Line::raw(view.address.clone()));
+    write_all(&lines, view.scroll, inner, buffer);
+}
