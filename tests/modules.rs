@@ -50,7 +50,7 @@ fn refused(what: &str, bytes: &[u8], code: &str, words: &str) {
     let started = worked();
     let error = tried(bytes).err().unwrap_or_else(|| panic!("{what}: not refused"));
     let took = worked() - started;
-    assert_eq!((error.code, error.kind.exit_status()), (code, 4), "{what}: {error}");
+    assert_eq!((error.code, error.kind().exit_status()), (code, 4), "{what}: {error}");
     let text = error.render(false);
     assert!(text.contains(words), "{what}: no '{words}' in: {text}");
     assert!(took < DEADLINE, "{what}: {took:?}");

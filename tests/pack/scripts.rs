@@ -131,7 +131,7 @@ fn every_hostile_script_ends_in_a_clear_error() {
     for script in scripts {
         let start: String = script.chars().take(300).collect();
         let Some(error) = outcome(&script) else { panic!("it ran: {start}") };
-        assert!(matches!(error.kind, Kind::Input | Kind::Limit), "{start}: {}", error.render(false));
+        assert!(matches!(error.kind(), Kind::Input | Kind::Limit), "{start}: {}", error.render(false));
         let shown = error.render(false);
         assert!(!shown.contains("root:") && !shown.contains("localhost"), "{start}: {shown}");
         assert!(!shown.chars().any(|c| c.is_control() && c != '\n'), "{start}: {}", shown.escape_debug());

@@ -26,8 +26,10 @@ pub enum Kind {
     Usage,
     /// An input file is wrong: exit status 3.
     Input,
-    /// A limit stopped a script or a plugin, or a running watch found a fault: exit status 4.
+    /// A limit stopped a script or a plugin: exit status 4.
     Limit,
+    /// A sensor, the system or a server failed: exit status 4.
+    Fault,
     /// Refused for trust: exit status 5.
     Trust,
     /// Files and disk: exit status 6.
@@ -43,7 +45,7 @@ impl Kind {
         match self {
             Self::Usage => 2,
             Self::Input => 3,
-            Self::Limit => 4,
+            Self::Limit | Self::Fault => 4,
             Self::Trust => 5,
             Self::Disk => 6,
             Self::State => 7,
@@ -132,10 +134,8 @@ pub struct Place {
 /// An error for a person.
 #[derive(Debug, Clone)]
 pub struct Diagnostic {
-    /// A stable code such as `E-SCRIPT-FACT`.
+    /// A stable code such as `E-SCRIPT-FACT`; the exit status belongs to it, see [`Diagnostic::kind`].
     pub code: &'static str,
-    /// Which exit status it causes.
-    pub kind: Kind,
     /// What is wrong: lower case, one sentence, no jargon.
     pub message: String,
     /// Where, if it is a place in a file.
@@ -149,9 +149,23 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
+    /// The kind of failure that its code stands for.
+    #[must_use]
+    pub fn kind(&self) -> Kind {
+        codes::kind_of(self.code)
+    }
+
+    /// As the failure of whatever the user wanted.
+    ///
+    /// # Errors
+    /// Always: this error.
+    pub fn fail<T>(self) -> Result<T> {
+        Err(Box::new(self))
+    }
+
     /// An error without a place.
-    pub fn new(kind: Kind, code: &'static str, message: impl Into<String>) -> Self {
-        Self { code, kind, message: message.into(), place: None, help: None, others: Vec::new(), left_out: 0 }
+    pub fn new(code: &'static str, message: impl Into<String>) -> Self {
+        Self { code, message: message.into(), place: None, help: None, others: Vec::new(), left_out: 0 }
     }
 
     /// The same, pointing at `span` of `source` with `label` beside the caret.
@@ -178,7 +192,7 @@ impl Diagnostic {
             std::io::ErrorKind::ReadOnlyFilesystem => "the file system is read-only".to_owned(),
             _ => error.to_string(),
         };
-        Self::new(Kind::Disk, "E-IO", format!("cannot {action} '{}': {reason}", path.display()))
+        Self::new("E-IO", format!("cannot {action} '{}': {reason}", path.display()))
     }
 }
 
@@ -189,12 +203,6 @@ impl fmt::Display for Diagnostic {
 }
 
 impl std::error::Error for Diagnostic {}
-
-impl<T> From<Diagnostic> for Result<T> {
-    fn from(diagnostic: Diagnostic) -> Self {
-        Err(Box::new(diagnostic))
-    }
-}
 
 /// The name nearest to `wrong` among `names`, if one is near enough to be meant.
 pub fn nearest_name<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {

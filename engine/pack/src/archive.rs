@@ -63,16 +63,16 @@ pub fn write<'a>(files: impl IntoIterator<Item = (&'a str, &'a [u8])>, out: impl
 pub fn read(bytes: &[u8]) -> Result<Vec<ArchiveEntry>> {
     if bytes.len() > MAX_PACK_BYTES {
         let message = format!("the pack has {} bytes, more than the limit of {MAX_PACK_BYTES}", bytes.len());
-        return malformed("E-PACK-LIMIT", message).into();
+        return malformed("E-PACK-LIMIT", message).fail();
     }
     if let Some((_, form)) = OTHER_FORMS.iter().find(|(start, _)| bytes.starts_with(start)) {
-        return form_error(format!("the file is {form}; a pack is a plain tar")).into();
+        return form_error(format!("the file is {form}; a pack is a plain tar")).fail();
     }
     let mut entries: Vec<ArchiveEntry> = Vec::new();
     let mut offset = 0;
     loop {
         let Some(block) = bytes.get(offset..offset + BLOCK) else {
-            return form_error(format!("the pack is cut off after {} bytes", bytes.len())).into();
+            return form_error(format!("the pack is cut off after {} bytes", bytes.len())).fail();
         };
         offset += BLOCK;
         if block.iter().all(|byte| *byte == 0) {
@@ -80,7 +80,7 @@ pub fn read(bytes: &[u8]) -> Result<Vec<ArchiveEntry>> {
         }
         if entries.len() == MAX_FILES {
             let message = format!("the pack has more than {MAX_FILES} files");
-            return malformed("E-PACK-LIMIT", message).into();
+            return malformed("E-PACK-LIMIT", message).fail();
         }
         let entry = entry(bytes, offset, Header::from_byte_slice(block))?;
         check_order(entries.last(), &entry.path)?;
@@ -94,7 +94,7 @@ pub fn read(bytes: &[u8]) -> Result<Vec<ArchiveEntry>> {
 
 fn entry(bytes: &[u8], offset: usize, header: &Header) -> Result<ArchiveEntry> {
     if header.as_ustar().is_none() {
-        return form_error("the file is not a tar of the form that 'engine pack build' writes").into();
+        return form_error("the file is not a tar of the form that 'engine pack build' writes").fail();
     }
     let name = header.path_bytes();
     let name = String::from_utf8_lossy(&name);
@@ -103,18 +103,18 @@ fn entry(bytes: &[u8], offset: usize, header: &Header) -> Result<ArchiveEntry> {
         malformed("E-PACK-ENTRY", message).help("do not use this pack; tell its author if you know them")
     };
     if let Some(what) = forbidden(header.entry_type()) {
-        return wrong(what).into();
+        return wrong(what).fail();
     }
     let path = EntryPath::new(&name).map_err(|what| Box::new(wrong(&what)))?;
     let mode = header.mode().map_err(|_| Box::new(wrong("has unreadable permission bits")))?;
     if mode != MODE {
-        return wrong(&format!("has the permission bits {mode:o}; every file of a pack has 644")).into();
+        return wrong(&format!("has the permission bits {mode:o}; every file of a pack has 644")).fail();
     }
     let size = header.entry_size().map_err(|_| Box::new(wrong("has an unreadable size")))?;
     let range = usize::try_from(size).ok().and_then(|size| Some(offset..offset.checked_add(size)?));
     match range {
         Some(range) if range.end <= bytes.len() => Ok(ArchiveEntry { path, range }),
-        _ => form_error(format!("the pack is cut off in '{path}', which should have {size} bytes")).into(),
+        _ => form_error(format!("the pack is cut off in '{path}', which should have {size} bytes")).fail(),
     }
 }
 
@@ -138,12 +138,12 @@ fn check_order(last: Option<&ArchiveEntry>, path: &EntryPath) -> Result<()> {
     let is_manifest = path.as_str() == super::manifest::FILE;
     match last {
         None if is_manifest => Ok(()),
-        None => form_error(format!("the pack starts with '{path}' instead of '{}'", super::manifest::FILE)).into(),
+        None => form_error(format!("the pack starts with '{path}' instead of '{}'", super::manifest::FILE)).fail(),
         Some(last) if last.path == *path || is_manifest => {
-            malformed("E-PACK-ENTRY", format!("the pack holds '{path}' twice")).into()
+            malformed("E-PACK-ENTRY", format!("the pack holds '{path}' twice")).fail()
         }
         Some(last) if last.path.as_str() != super::manifest::FILE && last.path > *path => {
-            form_error(format!("'{path}' stands after '{}': out of order", last.path)).into()
+            form_error(format!("'{path}' stands after '{}': out of order", last.path)).fail()
         }
         Some(_) => Ok(()),
     }
@@ -153,10 +153,10 @@ fn check_order(last: Option<&ArchiveEntry>, path: &EntryPath) -> Result<()> {
 fn check_end(bytes: &[u8], offset: usize) -> Result<()> {
     let rest = &bytes[offset..];
     if rest.len() < BLOCK {
-        return form_error(format!("the pack is cut off after {} bytes", bytes.len())).into();
+        return form_error(format!("the pack is cut off after {} bytes", bytes.len())).fail();
     }
     if rest.len() > BLOCK {
-        return form_error(format!("the pack has {} bytes after its end", rest.len() - BLOCK)).into();
+        return form_error(format!("the pack has {} bytes after its end", rest.len() - BLOCK)).fail();
     }
     Ok(())
 }
@@ -169,7 +169,7 @@ fn check_form(bytes: &[u8], entries: &[ArchiveEntry]) -> Result<()> {
     if same.is_ok() && comparing.offset == bytes.len() {
         return Ok(());
     }
-    form_error(format!("the pack is not in the one form of packs: byte {} differs", comparing.offset)).into()
+    form_error(format!("the pack is not in the one form of packs: byte {} differs", comparing.offset)).fail()
 }
 
 /// Takes the bytes that are expected, and stops at the first that is not.

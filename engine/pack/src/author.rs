@@ -72,7 +72,7 @@ impl Author {
         if !path.exists() {
             let shown = printable(&folder.display().to_string());
             let message = format!("'{shown}' is no pack's folder: it has no '{AUTHOR_FILE}'");
-            return malformed("E-PACK-FOLDER", message).help("make one with: engine pack new NAME").into();
+            return malformed("E-PACK-FOLDER", message).help("make one with: engine pack new NAME").fail();
         }
         let text = String::from_utf8(read_limited(&path, MAX_MANIFEST_BYTES)?)
             .map_err(|_| Box::new(malformed("E-PACK-FOLDER", format!("'{AUTHOR_FILE}' is not text in UTF-8"))))?;
@@ -80,7 +80,7 @@ impl Author {
         let author: Self = toml::from_str(&source.text).map_err(|error| toml_error(&source, &error))?;
         if author.seeds.is_empty() || author.seeds.len() > MAX_SEEDS {
             return malformed("E-PACK-MANIFEST", format!("'seeds' in '{AUTHOR_FILE}' names 1 to {MAX_SEEDS} seeds"))
-                .into();
+                .fail();
         }
         Ok(author)
     }
@@ -117,14 +117,14 @@ pub fn draft(folder: &Path) -> Result<Pack> {
         total += bytes.len();
         if total > MAX_PACK_BYTES {
             return malformed("E-PACK-LIMIT", format!("the files have more than {MAX_PACK_BYTES} bytes together"))
-                .into();
+                .fail();
         }
         files.insert(path.clone(), bytes);
     }
     for made in [POLICY, PICTURE, STEPS] {
         if files.keys().any(|path| path.as_str() == made) {
             let message = format!("'{made}' is made by 'engine pack build' and cannot be among the files");
-            return malformed("E-PACK-FOLDER", message).help("remove it from the folder and from 'files'").into();
+            return malformed("E-PACK-FOLDER", message).help("remove it from the folder and from 'files'").fail();
         }
     }
     assemble(folder, author.manifest(), &files)
@@ -183,9 +183,8 @@ fn assemble(origin: &Path, mut manifest: Manifest, files: &BTreeMap<EntryPath, V
     let text = manifest.to_toml()?;
     let mut bytes = Vec::new();
     let all = files.iter().map(|(path, bytes)| (path.as_str(), bytes.as_slice()));
-    archive::write(std::iter::once((manifest::FILE, text.as_bytes())).chain(all), &mut bytes).map_err(|error| {
-        Box::new(Diagnostic::new(Kind::Disk, "E-IO", format!("the pack cannot be written: {error}")))
-    })?;
+    archive::write(std::iter::once((manifest::FILE, text.as_bytes())).chain(all), &mut bytes)
+        .map_err(|error| Box::new(Diagnostic::new("E-IO", format!("the pack cannot be written: {error}"))))?;
     Pack::parse(origin, bytes)
 }
 
@@ -207,8 +206,8 @@ fn check_listing(folder: &Path, author: &Author) -> Result<()> {
         let message = format!("'{AUTHOR_FILE}' lists '{missing}', which is not in the folder");
         let error = malformed("E-PACK-LIST", message);
         return match nearest_name(missing.as_str(), found.iter().map(String::as_str)) {
-            Some(near) => error.help(format!("did you mean '{}'?", printable(near))).into(),
-            None => error.into(),
+            Some(near) => error.help(format!("did you mean '{}'?", printable(near))).fail(),
+            None => error.fail(),
         };
     }
     let listed = |name: &&String| !author.files.iter().any(|path| path.as_str() == name.as_str());
@@ -217,10 +216,10 @@ fn check_listing(folder: &Path, author: &Author) -> Result<()> {
         if let Err(what) = EntryPath::new(extra) {
             return malformed("E-PACK-ENTRY", format!("'{shown}' in the folder {what}"))
                 .help("rename or remove it")
-                .into();
+                .fail();
         }
         let help = format!("add \"{shown}\" to 'files', or remove the file");
-        return malformed("E-PACK-LIST", format!("'{shown}' is in the folder, but not in 'files'")).help(help).into();
+        return malformed("E-PACK-LIST", format!("'{shown}' is in the folder, but not in 'files'")).help(help).fail();
     }
     Ok(())
 }
@@ -250,7 +249,7 @@ fn walk(folder: &Path, prefix: &str, level: usize, found: &mut Vec<String>) -> R
             found.push(path);
         } else {
             let what = if kind.is_dir() { "is too deep" } else { "is no ordinary file" };
-            return malformed("E-PACK-ENTRY", format!("'{}' in the folder {what}", printable(&path))).into();
+            return malformed("E-PACK-ENTRY", format!("'{}' in the folder {what}", printable(&path))).fail();
         }
     }
     Ok(())

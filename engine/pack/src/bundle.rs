@@ -55,20 +55,20 @@ impl Pack {
             && let Some(extra) = self.files.keys().find(|path| *path != FILE && !listed(path))
         {
             return malformed("E-PACK-LIST", format!("the pack holds '{extra}', which its manifest does not list"))
-                .into();
+                .fail();
         }
         for line in &self.manifest.files {
             let Some(bytes) = self.file(line.path.as_str()) else {
                 let message = format!("the manifest lists '{}', which the pack does not hold", line.path);
-                return malformed("E-PACK-LIST", message).into();
+                return malformed("E-PACK-LIST", message).fail();
             };
             if bytes.len() as u64 != line.size {
                 let message = format!("'{}' has {} bytes, its manifest says {}", line.path, bytes.len(), line.size);
-                return malformed("E-PACK-LIST", message).into();
+                return malformed("E-PACK-LIST", message).fail();
             }
             if Digest::of(bytes) != line.sha256 {
                 let message = format!("'{}' is not the file that the manifest means: its digest differs", line.path);
-                return distrusted("E-TRUST-DIGEST", message).help("get the pack again").into();
+                return distrusted("E-TRUST-DIGEST", message).help("get the pack again").fail();
             }
             check_magic(line.path.as_str(), bytes)?;
         }
@@ -116,7 +116,7 @@ impl Pack {
     /// If there is no such file, or it is not text.
     pub fn text(&self, path: &str) -> Result<SourceText> {
         let Some(bytes) = self.file(path) else {
-            return malformed("E-PACK-LIST", format!("the pack holds no file '{}'", printable(path))).into();
+            return malformed("E-PACK-LIST", format!("the pack holds no file '{}'", printable(path))).fail();
         };
         let text = std::str::from_utf8(bytes)
             .map_err(|_| Box::new(malformed("E-PACK-ENTRY", format!("'{path}' in the pack is not text in UTF-8"))))?;
@@ -141,7 +141,7 @@ fn check_magic(path: &str, bytes: &[u8]) -> Result<()> {
     let kind = super::entry_path::kind(path).unwrap_or_default();
     match magic.iter().find(|(start, endings, _)| bytes.starts_with(start) && !endings.contains(&kind)) {
         Some((_, _, what)) => {
-            malformed("E-PACK-CAPABILITY", format!("'{path}' in the pack is {what} under another name")).into()
+            malformed("E-PACK-CAPABILITY", format!("'{path}' in the pack is {what} under another name")).fail()
         }
         None => Ok(()),
     }
@@ -153,19 +153,19 @@ pub(super) fn read_limited(path: &Path, limit: usize) -> Result<Vec<u8>> {
     let unreadable = |error: &std::io::Error| {
         let mut diagnostic = Diagnostic::disk("read", path, error);
         if error.kind() == std::io::ErrorKind::NotFound {
-            (diagnostic.kind, diagnostic.code) = (Kind::Input, "E-PACK-FILE");
+            diagnostic.code = "E-PACK-FILE";
         }
         Box::new(diagnostic)
     };
     // Opening a pipe would wait for its writer, perhaps for ever.
     if !std::fs::metadata(path).map_err(|error| unreadable(&error))?.is_file() {
-        return malformed("E-PACK-FILE", format!("'{shown}' is not an ordinary file")).into();
+        return malformed("E-PACK-FILE", format!("'{shown}' is not an ordinary file")).fail();
     }
     let file = std::fs::File::open(path).map_err(|error| unreadable(&error))?;
     let mut bytes = Vec::new();
     file.take(limit as u64 + 1).read_to_end(&mut bytes).map_err(|error| unreadable(&error))?;
     if bytes.len() > limit {
-        return malformed("E-PACK-LIMIT", format!("'{shown}' has more than {limit} bytes")).into();
+        return malformed("E-PACK-LIMIT", format!("'{shown}' has more than {limit} bytes")).fail();
     }
     Ok(bytes)
 }

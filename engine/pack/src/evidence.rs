@@ -116,7 +116,7 @@ pub(super) fn check_length(runnable: &Runnable, seeds: usize) -> Result<()> {
     };
     malformed("E-PACK-LIMIT", format!("the evidence of this behaviour {what}; the limit is {limit}"))
         .help("its author names fewer steps in the script's run(), or fewer seeds in pack.toml")
-        .into()
+        .fail()
 }
 
 /// Measures seeds; `stop` ends it early with an error, since half a measurement proves nothing.
@@ -135,7 +135,7 @@ pub fn measure(
         if runnable.members.is_empty() { learned(runnable, seed, stop, report) } else { combined(runnable, seed, stop) }
     })?;
     if stop.load(Ordering::Relaxed) {
-        return Diagnostic::new(Kind::Limit, "E-PACK-STOPPED", "stopped before every seed was measured").into();
+        return Diagnostic::new("E-PACK-STOPPED", "stopped before every seed was measured").fail();
     }
     Ok(proofs)
 }
@@ -230,7 +230,7 @@ pub fn replay(
     report: &(dyn Fn(Progress) + Sync),
 ) -> Result<Vec<Difference>> {
     let Some(evidence) = pack.manifest().evidence.as_ref().filter(|evidence| !evidence.seeds.is_empty()) else {
-        return malformed("E-PACK-EVIDENCE", format!("{} carries no evidence to replay", pack.title())).into();
+        return malformed("E-PACK-EVIDENCE", format!("{} carries no evidence to replay", pack.title())).fail();
     };
     let seeds: Vec<u64> = evidence.seeds.iter().map(|claim| claim.seed).collect();
     let proofs = measure(runnable, &seeds, 0, stop, report)?;

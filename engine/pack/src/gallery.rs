@@ -56,8 +56,7 @@ pub fn signature_line(trust: &TrustStore, pack: &Pack, signature: Option<&Signat
 /// Never in practice: only if text cannot be written to memory.
 pub fn gallery(cards: &[Card<'_>]) -> Result<String> {
     let mut page = String::new();
-    write_page(&mut page, cards)
-        .map_err(|_| Box::new(Diagnostic::new(Kind::Disk, "E-IO", "the gallery cannot be written")))?;
+    write_page(&mut page, cards).map_err(|_| Box::new(Diagnostic::new("E-IO", "the gallery cannot be written")))?;
     Ok(page)
 }
 

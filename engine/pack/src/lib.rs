@@ -66,12 +66,12 @@ pub const PACK_ENDING: &str = "pack";
 
 /// A pack whose form is wrong: exit status 3.
 fn malformed(code: &'static str, message: impl Into<String>) -> Diagnostic {
-    Diagnostic::new(Kind::Input, code, message)
+    Diagnostic::new(code, message)
 }
 
 /// A pack that cannot be trusted: exit status 5.
 fn distrusted(code: &'static str, message: impl Into<String>) -> Diagnostic {
-    Diagnostic::new(Kind::Trust, code, message)
+    Diagnostic::new(code, message)
 }
 
 /// Reads a small file of packs: a key or a signature.

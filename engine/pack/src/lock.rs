@@ -91,9 +91,8 @@ impl Lock {
     /// # Errors
     /// If it cannot be written.
     pub fn save(&self, path: &Path) -> Result<()> {
-        let text = toml::to_string(self).map_err(|error| {
-            Box::new(Diagnostic::new(Kind::Disk, "E-IO", format!("the lock cannot be written: {error}")))
-        })?;
+        let text = toml::to_string(self)
+            .map_err(|error| Box::new(Diagnostic::new("E-IO", format!("the lock cannot be written: {error}"))))?;
         let note = "# Written by 'engine pack install'. Keep it with your work: it pins every pack, byte for byte.\n";
         write_atomic(path, format!("{note}{text}").as_bytes())
     }
@@ -159,7 +158,7 @@ impl Lock {
         let message = format!("{} asks for what it was not granted: {}", pack.title(), join(&new));
         let flags: Vec<String> = new.iter().map(|line| format!("--grant {line}")).collect();
         let help = format!("if you want that: engine pack install, with {}", flags.join(" "));
-        distrusted("E-TRUST-CAPABILITY", message).help(help).into()
+        distrusted("E-TRUST-CAPABILITY", message).help(help).fail()
     }
 
     fn check_change(&self, before: &Locked, pack: &Pack, signer: &Signer, allow_older: bool) -> Result<()> {
@@ -167,17 +166,17 @@ impl Lock {
         if before.key.as_deref() != signer.key() {
             let message = format!("{} is not signed by the key that signed {name} {}", pack.title(), before.version);
             let help = format!("ask '{}' over another way; to start anew: engine pack remove {name}", name.owner());
-            return distrusted("E-TRUST-KEY-CHANGED", message).help(help).into();
+            return distrusted("E-TRUST-KEY-CHANGED", message).help(help).fail();
         }
         let version = &pack.manifest().version;
         if *version < before.version && !allow_older {
             let message = format!("{} is older than version {}, which is installed", pack.title(), before.version);
-            return distrusted("E-TRUST-VERSION", message).help("if you want that, add: --allow-older").into();
+            return distrusted("E-TRUST-VERSION", message).help("if you want that, add: --allow-older").fail();
         }
         if *version == before.version && pack.blob() != before.blob {
             let message = format!("{} is not the same as the {name} {version} that is installed", pack.title());
             let help = format!("a version never changes; to start anew: engine pack remove {name}");
-            return distrusted("E-TRUST-DIGEST", message).help(help).into();
+            return distrusted("E-TRUST-DIGEST", message).help(help).fail();
         }
         Ok(())
     }

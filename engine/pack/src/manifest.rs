@@ -130,12 +130,12 @@ impl Manifest {
         if source.text.len() > MAX_MANIFEST_BYTES {
             let message =
                 format!("the manifest has {} bytes, at most {MAX_MANIFEST_BYTES} are read", source.text.len());
-            return malformed("E-PACK-LIMIT", message).into();
+            return malformed("E-PACK-LIMIT", message).fail();
         }
         let FormatLine { format } = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
         if format != FORMAT {
             let message = format!("the pack has format {format}, this engine reads format {FORMAT}");
-            return malformed("E-PACK-FORMAT", message).help("use a newer engine").into();
+            return malformed("E-PACK-FORMAT", message).help("use a newer engine").fail();
         }
         let manifest: Self = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
         manifest.check()?;
@@ -167,11 +167,11 @@ impl Manifest {
             return Ok(());
         }
         let message = format!("{} {} runs on engines {}, this is {own}", self.name, self.version, self.engine);
-        malformed("E-PACK-ENGINE", message).help("get another version of the pack or of the engine").into()
+        malformed("E-PACK-ENGINE", message).help("get another version of the pack or of the engine").fail()
     }
 
     fn check(&self) -> Result<()> {
-        let wrong = |message: String| -> Result<()> { malformed("E-PACK-MANIFEST", message).into() };
+        let wrong = |message: String| -> Result<()> { malformed("E-PACK-MANIFEST", message).fail() };
         for (what, text) in [("license", &self.license), ("description", &self.description)] {
             let plain = !text.trim().is_empty() && text.len() <= MAX_TEXT_BYTES && !text.chars().any(char::is_control);
             if !plain || printable(text) != *text {
@@ -194,7 +194,7 @@ impl Manifest {
         }
         if self.evidence.as_ref().is_some_and(|evidence| evidence.seeds.len() > MAX_SEEDS) {
             return malformed("E-PACK-LIMIT", format!("the evidence has more than {MAX_SEEDS} seeds, the limit"))
-                .into();
+                .fail();
         }
         self.check_entry()?;
         self.check_capabilities()
@@ -208,11 +208,11 @@ impl Manifest {
             let Some(path) = path else { continue };
             if kind(path.as_str()) != Some(ending) {
                 let message = format!("the {what} of a pack is a .{ending} file, not '{path}'");
-                return malformed("E-PACK-MANIFEST", message).into();
+                return malformed("E-PACK-MANIFEST", message).fail();
             }
             if !self.files.iter().any(|line| line.path == *path) {
                 let message = format!("the {what} '{path}' is not among the pack's files");
-                return malformed("E-PACK-LIST", message).into();
+                return malformed("E-PACK-LIST", message).fail();
             }
         }
         Ok(())
@@ -229,11 +229,11 @@ impl Manifest {
             if let Some(hidden) = held.iter().find(|path| !asked.contains(path)) {
                 let message = format!("the pack holds '{hidden}' without asking for it under [capabilities]");
                 let help = format!("the author writes: {name} = [\"{hidden}\"]");
-                return malformed("E-PACK-CAPABILITY", message).help(help).into();
+                return malformed("E-PACK-CAPABILITY", message).help(help).fail();
             }
             if let Some(missing) = asked.iter().find(|path| !held.contains(path)) {
                 let message = format!("the pack asks for '{name}' with '{missing}', which it does not hold");
-                return malformed("E-PACK-CAPABILITY", message).into();
+                return malformed("E-PACK-CAPABILITY", message).fail();
             }
         }
         Ok(())

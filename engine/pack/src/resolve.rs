@@ -56,7 +56,7 @@ pub fn resolve(root: &Offer, offers: &[Offer]) -> Result<Vec<Offer>> {
     }
     match search.failure {
         Some(failure) => Err(failure),
-        None => malformed("E-PACK-DEPENDS", format!("no versions fit what {} builds on", root.name)).into(),
+        None => malformed("E-PACK-DEPENDS", format!("no versions fit what {} builds on", root.name)).fail(),
     }
 }
 
@@ -80,7 +80,7 @@ impl<'a> Search<'a> {
         let Some((who, dependency)) = pending.pop() else { return Ok(true) };
         self.tries += 1;
         if self.tries > MAX_TRIES {
-            return malformed("E-PACK-DEPENDS", "the dependencies are too tangled to resolve").into();
+            return malformed("E-PACK-DEPENDS", "the dependencies are too tangled to resolve").fail();
         }
         if let Some(chosen) = self.chosen.get(&dependency.name) {
             let fits = dependency.version.matches(&chosen.version);
@@ -136,7 +136,7 @@ fn visit<'a>(
     if let Some(start) = chain.iter().position(|name| **name == offer.name) {
         let names: Vec<String> = chain[start..].iter().chain([&&offer.name]).map(|name| name.to_string()).collect();
         let message = format!("packs build on one another in a circle: {}", names.join(" -> "));
-        return malformed("E-PACK-CYCLE", message).help("one of them must do without the other").into();
+        return malformed("E-PACK-CYCLE", message).help("one of them must do without the other").fail();
     }
     if done.contains(&&offer.name) {
         return Ok(());

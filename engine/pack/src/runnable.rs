@@ -46,9 +46,7 @@ impl Pack {
         manifest.check_engine()?;
         if manifest.capabilities.bridge {
             let message = format!("{} asks for 'bridge', and this engine has no bridge to a robot", self.title());
-            return Diagnostic::new(Kind::Trust, "E-PACK-CAPABILITY", message)
-                .help("get an engine that has one")
-                .into();
+            return Diagnostic::new("E-TRUST-CAPABILITY", message).help("get an engine that has one").fail();
         }
         let script = manifest.entry.script.as_str();
         let stem = script.rsplit('/').next().and_then(|file| file.strip_suffix(".rhai")).unwrap_or(script);
@@ -77,7 +75,7 @@ impl Pack {
         let policy = policy_from_toml(&source, &plan.settings, plan.grid()?.states());
         policy.map(Some).map_err(|mut error| {
             // The run is the user's, but the file is the author's: an input, not a state.
-            (error.kind, error.code) = (Kind::Input, "E-PACK-POLICY");
+            error.code = "E-PACK-POLICY";
             error
         })
     }
@@ -105,7 +103,7 @@ impl Pack {
         }
         let message = format!("{} has no world '{}'", self.title(), printable(name));
         let help = format!("its author puts worlds/{}.toml into the pack", printable(name));
-        at(behaviour, "world", malformed("E-PACK-WORLD", message).help(help), "not in the pack").into()
+        at(behaviour, "world", malformed("E-PACK-WORLD", message).help(help), "not in the pack").fail()
     }
 
     fn policies(&self, behaviour: &Behaviour) -> Result<Vec<SourceText>> {
@@ -119,7 +117,7 @@ impl Pack {
                     let message = format!("{} has no policy '{}'", self.title(), printable(&policy.path));
                     let error = malformed("E-PACK-POLICY", message)
                         .help("its author puts that run's policy.toml into the pack");
-                    at(behaviour, &format!("policy:{index}"), error, "not in the pack").into()
+                    at(behaviour, &format!("policy:{index}"), error, "not in the pack").fail()
                 }
             }
         };

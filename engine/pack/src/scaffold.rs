@@ -33,7 +33,7 @@ type Files = BTreeMap<String, Vec<u8>>;
 pub fn scaffold(name: &PackName, folder: &Path, from: Option<(&Path, Sources)>) -> Result<()> {
     if folder.exists() {
         let message = format!("'{}' is there already", printable(&folder.display().to_string()));
-        return Diagnostic::new(Kind::Usage, "E-PACK-FOLDER", message).help("choose another with --out FOLDER").into();
+        return Diagnostic::new("E-PACK-FOLDER", message).help("choose another with --out FOLDER").fail();
     }
     let (mut files, mut capabilities) = (Files::new(), Capabilities::default());
     let world = match from {
@@ -94,7 +94,7 @@ fn collect_filters(plan: &Plan, files: &mut Files) -> Result<Capabilities> {
         // The file that was tried, and for a native one allowed, is the file that is taken.
         if entry.sha256.as_deref() != Some(Digest::of(&bytes).to_string().as_str()) {
             let message = format!("'{}' changed while it was read", printable(&path.display().to_string()));
-            return distrusted("E-TRUST-DIGEST", message).help("run the command again").into();
+            return distrusted("E-TRUST-DIGEST", message).help("run the command again").fail();
         }
         let file = path.file_name().map(|file| file.to_string_lossy().into_owned()).unwrap_or_default();
         let place = format!("filters/{file}");
@@ -118,7 +118,7 @@ fn collect(plan: &Plan, files: &mut Files) -> Result<Option<String>> {
         for (member, policy) in load_members(plan)?.iter().zip(&plan.settings.policies) {
             let Some(path) = inside("scripts", policy.path.trim_end_matches("policy.toml")) else {
                 let message = format!("the policy '{}' stands outside the pack", printable(&policy.path));
-                return malformed("E-PACK-POLICY", message).help("name it by a path below the script's folder").into();
+                return malformed("E-PACK-POLICY", message).help("name it by a path below the script's folder").fail();
             };
             files.insert(format!("{path}/policy.toml"), member.source.text.as_bytes().to_vec());
         }

@@ -71,7 +71,7 @@ impl Shelf {
             let message = format!("{title} is locked, but not installed on this machine");
             let help =
                 format!("install it again: engine pack install {}-{}.pack", locked.name.file_stem(), locked.version);
-            return super::malformed("E-PACK-MISSING", message).help(help).into();
+            return super::malformed("E-PACK-MISSING", message).help(help).fail();
         }
         let changed = || {
             let message = format!("the installed {title} is not what was locked: its files changed");

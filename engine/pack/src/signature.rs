@@ -162,7 +162,7 @@ fn hex_id(bytes: &[u8]) -> String {
 }
 
 fn key_error(message: &str) -> Box<Diagnostic> {
-    let diagnostic = Diagnostic::new(Kind::Input, "E-PACK-KEY", message);
+    let diagnostic = Diagnostic::new("E-PACK-KEY", message);
     Box::new(diagnostic.help("make keys with: engine pack keygen, or minisign -G"))
 }
 

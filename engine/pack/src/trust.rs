@@ -100,7 +100,7 @@ impl TrustStore {
     /// If it cannot be written.
     pub fn save(&self, path: &Path) -> Result<()> {
         let text = toml::to_string(self).map_err(|error| {
-            Box::new(Diagnostic::new(Kind::Disk, "E-IO", format!("the trusted keys cannot be written: {error}")))
+            Box::new(Diagnostic::new("E-IO", format!("the trusted keys cannot be written: {error}")))
         })?;
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder)
@@ -122,15 +122,15 @@ impl TrustStore {
     pub fn trust(&mut self, owner: &str, key: &str, replace: bool) -> Result<()> {
         let id = key_id(key)?;
         check_part(owner.strip_suffix('*').map_or(owner, |prefix| prefix.trim_end_matches(['.', '_', '-'])))
-            .map_err(|what| Box::new(Diagnostic::new(Kind::Usage, "E-PACK-NAME", what)))?;
+            .map_err(|what| Box::new(Diagnostic::new("E-PACK-NAME", what)))?;
         if self.revoked.iter().any(|revoked| revoked == key) {
-            return distrusted("E-TRUST-REVOKED", format!("key {id} was revoked, and stays so")).into();
+            return distrusted("E-TRUST-REVOKED", format!("key {id} was revoked, and stays so")).fail();
         }
         if let Some(known) = self.keys.iter_mut().find(|known| known.owner == owner) {
             if known.key != key && !replace {
                 let message = format!("'{owner}' has key {}, and {id} is another", key_id(&known.key)?);
                 let help = "ask the owner over another way first; then: the same command with --replace";
-                return distrusted("E-TRUST-KEY-CHANGED", message).help(help).into();
+                return distrusted("E-TRUST-KEY-CHANGED", message).help(help).fail();
             }
             key.clone_into(&mut known.key);
         } else {
@@ -167,13 +167,13 @@ impl TrustStore {
             }
             let message = format!("{} is not signed: nobody says that it is what it claims to be", pack.title());
             let help = "get its .minisig file beside it, or accept that with --allow-unsigned";
-            return distrusted("E-TRUST-UNSIGNED", message).help(help).into();
+            return distrusted("E-TRUST-UNSIGNED", message).help(help).fail();
         };
         let id = signature.key_id();
         let has_id = |key: &str| key_id(key).is_ok_and(|own| own == id);
         if self.revoked.iter().any(|key| has_id(key)) {
             return distrusted("E-TRUST-REVOKED", format!("{} is signed by key {id}, which was revoked", pack.title()))
-                .into();
+                .fail();
         }
         let (own, others): (Vec<_>, Vec<_>) = self.keys.iter().partition(|known| matches(&known.owner, owner));
         if let Some(known) = own.iter().find(|known| has_id(&known.key)) {
@@ -188,16 +188,16 @@ impl TrustStore {
             );
             let help =
                 format!("ask '{owner}' over another way; for a new key: engine pack trust {owner} --key KEY --replace");
-            return distrusted("E-TRUST-KEY-CHANGED", message).help(help).into();
+            return distrusted("E-TRUST-KEY-CHANGED", message).help(help).fail();
         }
         if let Some(other) = others.iter().find(|known| has_id(&known.key)) {
             let message =
                 format!("{} is signed by a key that is trusted for '{}' only", pack.title(), printable(&other.owner));
-            return distrusted("E-TRUST-OWNER", message).help("do not use this pack").into();
+            return distrusted("E-TRUST-OWNER", message).help("do not use this pack").fail();
         }
         let message = format!("{} is signed by key {id}, which you do not know", pack.title());
         let help = format!("get the public key of '{owner}' from them, then: engine pack trust {owner} --key KEY");
-        distrusted("E-TRUST-KEY", message).help(help).into()
+        distrusted("E-TRUST-KEY", message).help(help).fail()
     }
 }
 

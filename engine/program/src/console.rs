@@ -27,7 +27,7 @@ impl From<std::io::Error> for ConsoleError {
             return Self::Closed;
         }
         let message = format!("cannot write to standard output: {error}");
-        Self::Failed(Box::new(Diagnostic::new(Kind::Disk, "E-IO", message).help("make room, or write somewhere else")))
+        Self::Failed(Box::new(Diagnostic::new("E-IO", message).help("make room, or write somewhere else")))
     }
 }
 

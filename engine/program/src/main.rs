@@ -22,7 +22,7 @@ fn main() -> ExitCode {
         Err(ConsoleError::Closed) => ExitCode::SUCCESS,
         Err(ConsoleError::Failed(error)) => {
             console.error(&error, std::io::stderr().is_terminal());
-            ExitCode::from(error.kind.exit_status())
+            ExitCode::from(error.kind().exit_status())
         }
     }
 }

@@ -250,8 +250,7 @@ impl Board {
 }
 
 fn encode(message: &Message<'_>) -> Result<Arc<str>> {
-    let text = serde_json::to_string(message).map_err(|error| {
-        Box::new(Diagnostic::new(engine::diagnostic::Kind::Disk, "E-IO", format!("cannot write a message: {error}")))
-    })?;
+    let text = serde_json::to_string(message)
+        .map_err(|error| Box::new(Diagnostic::new("E-IO", format!("cannot write a message: {error}"))))?;
     Ok(text.into())
 }

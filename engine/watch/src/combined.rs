@@ -22,8 +22,8 @@ use insight::store::{load_members, policy_files};
 pub(super) fn retest(again: &Relearner, plan: Plan, stop: &AtomicBool, files: &Mutex<Files>) -> Result<()> {
     if again.settings.finished.is_some() {
         let message = "this behaviour combines learned policies: nothing is learned that could be kept or written";
-        let error = Diagnostic::new(Kind::Input, "E-WATCH-POLICIES", message);
-        return error.help("leave out --keep and --out; engine run SCRIPT writes the folder of such a test").into();
+        let error = Diagnostic::new("E-WATCH-POLICIES", message);
+        return error.help("leave out --keep and --out; engine run SCRIPT writes the folder of such a test").fail();
     }
     let started = Instant::now();
     files.lock().unwrap_or_else(PoisonError::into_inner).watch(policy_files(&plan))?;

@@ -144,7 +144,7 @@ fn digest(file: &Path) -> Option<Hash> {
 
 fn failed(error: &notify::Error) -> Box<Diagnostic> {
     let message = format!("cannot watch the files of the behaviour: {error}");
-    Box::new(Diagnostic::new(Kind::Disk, "E-WATCH-FILES", message).help("close other programs that watch many files"))
+    Box::new(Diagnostic::new("E-WATCH-FILES", message).help("close other programs that watch many files"))
 }
 
 #[cfg(test)]

@@ -65,7 +65,7 @@ pub(super) struct Shared {
 /// # Errors
 /// If no port from `port` on is free, or the system gives no randomness for the token.
 pub fn listen(board: Arc<Board>, asker: Asker, port: u16) -> Result<Address> {
-    let limit = |code, message: String| Box::new(Diagnostic::new(Kind::Limit, code, message));
+    let limit = |code, message: String| Box::new(Diagnostic::new(code, message));
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().max_blocking_threads(2).build();
     let runtime = runtime.map_err(|error| limit("E-WATCH-SERVER", format!("cannot start the server: {error}")))?;
     let mut ports = port..=port.saturating_add(PORTS - 1);

@@ -148,9 +148,9 @@ impl Session {
         }
         let (seeds, room) = (self.pupils.len(), self.room);
         let message = format!("there is no room to keep {steps} steps of {seeds} seeds: at most {room} of each");
-        Diagnostic::new(Kind::Limit, "E-WATCH-ROOM", message)
+        Diagnostic::new("E-WATCH-ROOM", message)
             .help("watch fewer seeds (--seeds N) or fewer steps (--steps N); the next save learns from nothing")
-            .into()
+            .fail()
     }
 }
 

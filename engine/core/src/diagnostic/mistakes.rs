@@ -99,7 +99,7 @@ impl Mistakes {
     /// # Errors
     /// If there is a mistake: the first, with the further ones.
     pub fn end(self) -> Result<()> {
-        self.gathered().map_or(Ok(()), Into::into)
+        self.gathered().map_or(Ok(()), Diagnostic::fail)
     }
 
     /// All as one error, after one more that ended the search.
@@ -132,7 +132,7 @@ mod tests {
     use crate::diagnostic::Kind;
 
     fn at(source: &SourceText, start: usize, message: &str) -> Diagnostic {
-        Diagnostic::new(Kind::Input, "E-IO", message).at(source, start..start + 1, "here")
+        Diagnostic::new("E-SCRIPT-RULE", message).at(source, start..start + 1, "here")
     }
 
     #[test]
@@ -140,7 +140,7 @@ mod tests {
         let (script, world) = (SourceText::new("a.rhai", "one\ntwo\nthree"), SourceText::new("w.toml", "x"));
         let mut mistakes = Mistakes::new(&script);
         mistakes.add(at(&world, 0, "world"));
-        mistakes.add(Diagnostic::new(Kind::State, "E-IO", "nowhere"));
+        mistakes.add(Diagnostic::new("E-IO", "nowhere"));
         mistakes.add(at(&script, 8, "third"));
         mistakes.add(at(&script, 0, "first"));
         mistakes.add(at(&script, 8, "what follows from the third"));
@@ -149,7 +149,7 @@ mod tests {
         let told: Vec<_> = error.all().map(|one| one.message.as_str()).collect();
         assert_eq!(told, ["first", "third", "world", "nowhere"]);
         assert_eq!(error.summary().unwrap(), "4 mistakes in 'a.rhai' and 'w.toml'");
-        assert_eq!(error.kind, Kind::Input);
+        assert_eq!(error.kind(), Kind::Input);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The policies that a script combines: each with the eyes that it learned with.
 
 use super::{Eyes, Plan};
-use crate::diagnostic::{Diagnostic, Kind, Result, SourceText, printable};
+use crate::diagnostic::{Diagnostic, Result, SourceText, printable};
 use crate::filter::Chain;
 use crate::learner::Policy;
 use crate::reward::Behaviour;
@@ -34,7 +34,7 @@ impl Member {
         let (width_px, height_px) = (plan.settings.camera.width_px as usize, plan.settings.camera.height_px as usize);
         let wrong = |message: &str| {
             let message = format!("policy \"{}\" cannot see here: {message}", printable(&self.name));
-            Box::new(Diagnostic::new(Kind::Input, "E-POLICY", message))
+            Box::new(Diagnostic::new("E-POLICY", message))
         };
         let chain = Chain::new(&self.filters, width_px, height_px, &plan.filters)
             .map_err(|error| wrong(&error.error.message))?;
@@ -49,10 +49,10 @@ impl Member {
 /// For the first mistake, at its call.
 pub(super) fn check(behaviour: &Behaviour, settings: &Settings) -> Result<()> {
     let at = |place: &str, message: String, label: &str, help: &str| -> Result<()> {
-        let error = Diagnostic::new(Kind::Input, "E-POLICY", message).help(help);
+        let error = Diagnostic::new("E-POLICY", message).help(help);
         match behaviour.place_of(place) {
-            Some(span) => error.at(behaviour.source(), span, label).into(),
-            None => error.into(),
+            Some(span) => error.at(behaviour.source(), span, label).fail(),
+            None => error.fail(),
         }
     };
     let second = "add a second one: policy(\"avoid\", \"runs/avoid/1\");";

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use super::Plan;
-use crate::diagnostic::{Diagnostic, Kind, Result};
+use crate::diagnostic::{Diagnostic, Result};
 use crate::geometry::Pose;
 use crate::sensors::Camera;
 use crate::sensors::observation::Image;
@@ -46,11 +46,11 @@ pub(super) fn check(plan: &Plan) -> Result<()> {
     let place = format!("filter:{}", stages.saturating_sub(1));
     let message =
         format!("the filters leave nothing of any image in world '{}': there is nothing to learn from", layout.name);
-    let error = Diagnostic::new(Kind::Input, "E-FILTER-BLIND", message).help(
+    let error = Diagnostic::new("E-FILTER-BLIND", message).help(
         "check the filter's parameters, the camera's tilt and height, and that the world shows what the filter looks for",
     );
     match plan.behaviour.place_of(&place) {
-        Some(span) => error.at(plan.behaviour.source(), span, "sees nothing from any start").into(),
-        None => error.into(),
+        Some(span) => error.at(plan.behaviour.source(), span, "sees nothing from any start").fail(),
+        None => error.fail(),
     }
 }

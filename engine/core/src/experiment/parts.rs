@@ -1,7 +1,7 @@
 //! What a script's settings are made into, each part checked by itself: chain, grid, judge, mirror.
 
 use super::combination;
-use crate::diagnostic::{Diagnostic, Kind, Mistakes, Result};
+use crate::diagnostic::{Diagnostic, Mistakes, Result};
 use crate::filter::{Catalogue, Chain, ChainError};
 use crate::geometry::Twist;
 use crate::learner::Mirror;
@@ -63,7 +63,7 @@ impl Parts<'_> {
         let camera = &self.settings.camera;
         Grid::new(&self.settings.grid, camera.width_px as usize, camera.height_px as usize).map_err(|error| {
             let help = Some("use fewer rows or columns".to_owned());
-            self.point(Diagnostic::new(Kind::Input, "E-GRID", error.0), "grid.rows", "this many rows", help)
+            self.point(Diagnostic::new("E-GRID", error.0), "grid.rows", "this many rows", help)
         })
     }
 
@@ -79,7 +79,7 @@ impl Parts<'_> {
             let message =
                 format!("action {index} ({linear} m/s, {angular} rad/s) has no mirror image among the actions");
             let help = format!("add the action [{linear}, {}], or leave 'mirror' out", -angular);
-            let error = Diagnostic::new(Kind::Input, "E-MIRROR", message);
+            let error = Diagnostic::new("E-MIRROR", message);
             self.point(error, "learner.mirror", "asks for mirrored learning", Some(help))
         })
     }

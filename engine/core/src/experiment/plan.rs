@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::parts::Parts;
 use super::{Leg, outlook};
-use crate::diagnostic::{Diagnostic, Kind, Mistakes, Result, nearest_name, printable};
+use crate::diagnostic::{Diagnostic, Mistakes, Result, nearest_name, printable};
 use crate::filter::{Catalogue, Chain};
 use crate::learner::Mirror;
 use crate::reward::{Behaviour, Draft, Judge, Unread};
@@ -137,7 +137,7 @@ impl Plan {
         let parts = Parts { behaviour: &behaviour, settings: &settings, filters: &filters };
         let sees = parts.check(unread, &mut mistakes);
         let Some(layout) = layout else {
-            let unknown = Diagnostic::new(Kind::Input, "E-WORLD-FILE", "the script does not say which world");
+            let unknown = Diagnostic::new("E-WORLD-FILE", "the script does not say which world");
             return mistakes.end().and(Err(Box::new(unknown)));
         };
         let plan = Self { behaviour, settings, layout, filters, earlier: Vec::new() };
@@ -210,7 +210,7 @@ fn changed(settings: &Settings, overrides: &Overrides) -> Result<Settings> {
 
 /// Carries out one `--set KEY=VALUE`.
 fn set(settings: &mut Settings, pair: &str) -> Result<()> {
-    let wrong = |message: String, help: String| Diagnostic::new(Kind::Usage, "E-SET", message).help(help).into();
+    let wrong = |message: String, help: String| Diagnostic::new("E-SET", message).help(help).fail();
     let Some((name, text)) = pair.split_once('=') else {
         let message = format!("'{}' is not KEY=VALUE", printable(pair));
         return wrong(message, "write for example: --set camera.tilt_deg=40".to_owned());
@@ -227,7 +227,7 @@ fn set(settings: &mut Settings, pair: &str) -> Result<()> {
         return set_filter(settings, key, &value);
     }
     apply(settings, group, key, &value).map_err(|error| {
-        let diagnostic = Diagnostic::new(Kind::Usage, "E-SET", format!("{}: '{}'", error.message, printable(pair)));
+        let diagnostic = Diagnostic::new("E-SET", format!("{}: '{}'", error.message, printable(pair)));
         Box::new(match error.help {
             Some(help) => diagnostic.help(help),
             None => diagnostic,
@@ -243,7 +243,7 @@ fn set_filter(settings: &mut Settings, key: &str, value: &Value) -> Result<()> {
     let (Some((filter, parameter)), Value::Number(number)) = (stage, value) else {
         let message = format!("'filter.{}' is not a number of one of the behaviour's filters", printable(key));
         let help = format!("write filter.NAME.PARAMETER=NUMBER; the filters are: {}", names.join(", "));
-        return Diagnostic::new(Kind::Usage, "E-SET", message).help(help).into();
+        return Diagnostic::new("E-SET", message).help(help).fail();
     };
     filter.parameters.retain(|(name, _)| name != parameter);
     filter.parameters.push((parameter.to_owned(), *number));
@@ -284,10 +284,10 @@ fn find_world(behaviour: &Behaviour, name: &str, place: Option<std::ops::Range<u
         None => format!("there are: {}", known.join(", ")),
     };
     let message = format!("there is no world '{}'", printable(name));
-    let error = Diagnostic::new(Kind::Input, "E-WORLD-FILE", message).help(help);
+    let error = Diagnostic::new("E-WORLD-FILE", message).help(help);
     match place {
-        Some(span) => error.at(behaviour.source(), span, "not found").into(),
-        None => error.into(),
+        Some(span) => error.at(behaviour.source(), span, "not found").fail(),
+        None => error.fail(),
     }
 }
 

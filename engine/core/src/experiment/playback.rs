@@ -13,7 +13,7 @@
 
 use super::testing::TEST_SEED_OFFSET;
 use super::{Cycle, Ledger, Plan, Step};
-use crate::diagnostic::{Diagnostic, Kind, Result};
+use crate::diagnostic::{Diagnostic, Result};
 use crate::robot::SimulatedRobot;
 
 /// What a ledger holds.
@@ -106,7 +106,7 @@ impl<'a> Playback<'a> {
                 let message = format!("the log has {} steps, no step {step}", self.ledger.len());
                 let last = self.ledger.len().saturating_sub(1);
                 let help = format!("steps are counted from 0 to {last}");
-                return Diagnostic::new(Kind::Usage, "E-LOG-STEP", message).help(help).into();
+                return Diagnostic::new("E-LOG-STEP", message).help(help).fail();
             }
         }
         self.make_ready()
@@ -122,7 +122,7 @@ impl<'a> Playback<'a> {
         let action = usize::from(record.action);
         if action >= self.plan.settings.actions.len() {
             let message = format!("step {} of the log has action {action}, which the run does not have", self.done);
-            return Diagnostic::new(Kind::State, "E-LOG-FILE", message).help("run the behaviour again").into();
+            return Diagnostic::new("E-LOG-FILE", message).help("run the behaviour again").fail();
         }
         let step = self.cycle.step(action)?;
         self.played.clear();

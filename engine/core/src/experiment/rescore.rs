@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use super::legs::first_fixed_difference;
 use super::{Ledger, Phase, Plan, Playback};
-use crate::diagnostic::{Diagnostic, Kind, Result, printable};
+use crate::diagnostic::{Diagnostic, Result, printable};
 use crate::learner::{Learner, Policy, Transition};
 use crate::random::{Random, Stream};
 use crate::reward::Behaviour;
@@ -101,12 +101,12 @@ pub fn plan_with_rules_of(plan: &Plan, behaviour: Arc<Behaviour>) -> Result<Plan
     let (old, new) = (plan.behaviour.settings(), behaviour.settings());
     let mut settings = plan.settings.clone();
     if let Some((what, place)) = first_fixed_difference(old, new) {
-        return other(&behaviour, &what, &place).into();
+        return other(&behaviour, &what, &place).fail();
     }
     for row in SETTINGS.iter().filter(|row| row.group == "learner" && (row.get)(old) != (row.get)(new)) {
         let value = (row.get)(new);
         if apply(&mut settings, row.group, row.key, &value).is_err() {
-            return other(&behaviour, &row.name(), &row.name()).into();
+            return other(&behaviour, &row.name(), &row.name()).fail();
         }
     }
     Plan::with_layout(behaviour, settings, Arc::clone(&plan.layout), Arc::clone(&plan.filters))
@@ -114,7 +114,7 @@ pub fn plan_with_rules_of(plan: &Plan, behaviour: Arc<Behaviour>) -> Result<Plan
 
 fn other(behaviour: &Behaviour, what: &str, place: &str) -> Diagnostic {
     let message = format!("'{}' sets {what} otherwise than the recorded run did", printable(behaviour.name()));
-    let error = Diagnostic::new(Kind::State, "E-RESCORE", message)
+    let error = Diagnostic::new("E-RESCORE", message)
         .help("a record can be judged again, not seen again: change rules only, or learn anew with engine run");
     match behaviour.place_of(place) {
         Some(span) => error.at(behaviour.source(), span, "the recorded run had something else"),

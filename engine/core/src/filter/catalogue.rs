@@ -11,7 +11,7 @@ use filter_api::{Descriptor, FilterError, Plugin};
 use super::running::{Linked, Running, refused};
 use super::trust::Trust;
 use super::{native, wasm, worker};
-use crate::diagnostic::{Diagnostic, Kind, Result, nearest_name, printable};
+use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
 
 /// The filters that are linked in, by name.
 pub const LINKED_IN: &[Plugin] =
@@ -127,7 +127,7 @@ impl Catalogue {
         let (name, path) = (printable(name), printable(&path.display().to_string()));
         let message = format!("there are two filters '{name}': in {other} and in '{path}'");
         let help = "give one of them another name, in its descriptor and as the name of its file";
-        Diagnostic::new(Kind::Input, "E-FILTER-TWICE", message).help(help).into()
+        Diagnostic::new("E-FILTER-TWICE", message).help(help).fail()
     }
 
     /// The filter called `name`, loaded if it was not before.
@@ -146,7 +146,7 @@ impl Catalogue {
             Some(near) => format!("did you mean \"{near}\"?"),
             None => format!("there are: {}", self.names().collect::<Vec<_>>().join(", ")),
         };
-        Diagnostic::new(Kind::Input, "E-FILTER-SETTING", message).help(help).into()
+        Diagnostic::new("E-FILTER-SETTING", message).help(help).fail()
     }
 
     /// The name, form and path of every filter, sorted by name, without opening any.
@@ -181,7 +181,7 @@ impl Catalogue {
         let path = printable(&file.path.display().to_string());
         let message = format!("the filter in '{path}' calls itself '{}'", printable(own));
         let help = "name the file after the filter, so that a host knows which file to open";
-        Diagnostic::new(Kind::Input, "E-FILTER-NAME", message).help(help).into()
+        Diagnostic::new("E-FILTER-NAME", message).help(help).fail()
     }
 }
 

@@ -7,7 +7,7 @@ use filter_api::{Descriptor, FilterError, Format, Frame, FrameMut, Parameter, Pa
 use super::catalogue::{Catalogue, Entry, Form};
 use super::purity;
 use super::running::Running;
-use crate::diagnostic::{Diagnostic, Kind, Result, nearest_name, printable};
+use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
 use crate::sensors::observation::Image;
 use crate::settings::FilterSettings;
 
@@ -37,7 +37,7 @@ pub struct ChainError {
 
 impl ChainError {
     fn new(stage: usize, message: String, help: Option<String>) -> Self {
-        let error = Diagnostic::new(Kind::Input, "E-FILTER-SETTING", message);
+        let error = Diagnostic::new("E-FILTER-SETTING", message);
         Self { stage, parameter: None, error: Box::new(Diagnostic { help, ..error }) }
     }
 }
@@ -121,9 +121,7 @@ impl Chain {
     /// If the image has another size than the chain was built for, or a filter fails.
     pub fn apply(&mut self, image: &Image) -> Result<&[u8]> {
         let (width, height) = (self.width_px, self.height_px);
-        let wrong = |FilterError(words)| {
-            Box::new(Diagnostic::new(Kind::Limit, "E-FILTER", format!("a filter failed: {words}")))
-        };
+        let wrong = |FilterError(words)| Box::new(Diagnostic::new("E-FILTER", format!("a filter failed: {words}")));
         let mut input = image.frame().map_err(wrong)?;
         if (input.width_px(), input.height_px()) != (width, height) {
             return Err(wrong(FilterError(format!("the image is not {width}x{height} pixels"))));

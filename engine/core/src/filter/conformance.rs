@@ -5,7 +5,7 @@ use filter_api::{Format, Frame, FrameMut, Parameter};
 use super::catalogue::{Entry, Form};
 use super::purity::noise;
 use super::running::Running;
-use crate::diagnostic::{Diagnostic, Kind, Result};
+use crate::diagnostic::{Diagnostic, Result};
 
 /// Width and height in pixels, with the smallest there are, single rows and columns, odd and even.
 const SIZES: [(usize, usize); 10] =
@@ -120,7 +120,7 @@ pub(super) fn broken<T>(entry: &Entry, what: &str) -> Result<T> {
     };
     let message = format!("filter '{}' breaks the law of filters: {what}", entry.descriptor.name);
     let help = "tell its author: the same frame and parameters must give the same output, every byte of it";
-    Diagnostic::new(Kind::Limit, code, message).help(help).into()
+    Diagnostic::new(code, message).help(help).fail()
 }
 
 #[cfg(test)]

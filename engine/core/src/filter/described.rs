@@ -6,7 +6,7 @@ use filter_api::abi::BRIGHTNESS;
 use filter_api::{Descriptor, Format, Parameter, ParameterKind};
 use serde::{Deserialize, Serialize};
 
-use crate::diagnostic::{Diagnostic, Kind, Result, printable};
+use crate::diagnostic::{Diagnostic, Result, printable};
 
 /// The most parameters that a filter may have.
 pub(super) const MOST_PARAMETERS: usize = 64;
@@ -56,7 +56,7 @@ impl Described {
             let shown = printable(&path.display().to_string());
             let message = format!("the descriptor of '{shown}' is wrong: {}", fault.unwrap_or_default());
             let help = "tell its author; the law of filters is plugins/filter-api/README.md";
-            return Diagnostic::new(Kind::Input, code, message).help(help).into();
+            return Diagnostic::new(code, message).help(help).fail();
         };
         let parameters: Vec<Parameter> = self.parameters.into_iter().filter_map(DescribedParameter::keep).collect();
         Ok(Box::leak(Box::new(Descriptor {

@@ -5,7 +5,7 @@ use std::path::Path;
 use filter_api::abi::{ABI_VERSION, PLUGIN_SYMBOL, RawFrame, RawParameter, RawPlugin};
 use object::{Architecture, BinaryFormat, Object, ObjectSegment, ObjectSymbol};
 
-use crate::diagnostic::{Diagnostic, Kind, Result, printable};
+use crate::diagnostic::{Diagnostic, Result, printable};
 
 /// Checks that a file is a whole library for this machine, and holds a filter of this version of the contract.
 ///
@@ -14,7 +14,7 @@ use crate::diagnostic::{Diagnostic, Kind, Result, printable};
 pub(super) fn check(path: &Path, bytes: &[u8]) -> Result<()> {
     fault(bytes).map_or(Ok(()), |(what, help)| {
         let message = format!("'{}' {what}", printable(&path.display().to_string()));
-        Diagnostic::new(Kind::Input, "E-NATIVE-ABI", message).help(help).into()
+        Diagnostic::new("E-NATIVE-ABI", message).help(help).fail()
     })
 }
 

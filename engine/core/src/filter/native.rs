@@ -19,7 +19,7 @@ use super::described::{Described, DescribedParameter, LONGEST_TEXT_BYTES, MOST_P
 use super::library;
 use super::running::{Running, check_frames, failed, refused};
 use super::trust::Trust;
-use crate::diagnostic::{Diagnostic, Kind, Result, printable};
+use crate::diagnostic::{Diagnostic, Result, printable};
 
 /// Loads a library that the user allowed.
 ///
@@ -63,7 +63,7 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded> {
     let wrong = |why: &libloading::Error| {
         let message = format!("'{shown}' cannot be loaded: {}", printable(&why.to_string()));
         let help = "a library that it needs may be missing; build it again on this machine";
-        Box::new(Diagnostic::new(Kind::Input, "E-NATIVE-ABI", message).help(help))
+        Box::new(Diagnostic::new("E-NATIVE-ABI", message).help(help))
     };
     // SAFETY: loading runs the library's constructors; the user allowed this very file to do so.
     let library = unsafe { Library::new(&copy) }.map_err(|error| wrong(&error))?;
@@ -83,7 +83,7 @@ pub(super) fn describe(plugin: Loaded, path: &Path) -> Result<Described> {
     if !functions || count > MOST_PARAMETERS || (count > 0 && raw.parameters.is_null()) {
         let message = format!("'{}' leaves out a part of its plugin", printable(&path.display().to_string()));
         let help = "its author must set create, process and destroy, and a list of at most 64 parameters";
-        return Diagnostic::new(Kind::Input, "E-NATIVE-ABI", message).help(help).into();
+        return Diagnostic::new("E-NATIVE-ABI", message).help(help).fail();
     }
     // SAFETY: the law says that a plugin points at `parameter_count` parameters.
     let parameters = if count == 0 { &[] } else { unsafe { std::slice::from_raw_parts(raw.parameters, count) } };

@@ -1,6 +1,6 @@
 //! A filter at work, whatever its form: the contract of filters with the engine's own errors.
 
-use crate::diagnostic::{Diagnostic, Kind, Result, printable};
+use crate::diagnostic::{Diagnostic, Result, printable};
 use filter_api::{Descriptor, Filter, FilterError, Frame, FrameMut};
 
 /// A filter that was created with its parameters.
@@ -39,10 +39,10 @@ pub(super) fn check_frames(descriptor: &Descriptor, input: &Frame<'_>, output: &
 
 /// Why a running filter gave no frame.
 pub(super) fn failed(code: &'static str, name: &str, words: &str) -> Box<Diagnostic> {
-    Box::new(Diagnostic::new(Kind::Limit, code, format!("filter '{name}' failed: {}", printable(words))))
+    Box::new(Diagnostic::new(code, format!("filter '{name}' failed: {}", printable(words))))
 }
 
 /// Why a filter could not be created: a mistake in its parameters, so far as anyone can tell.
 pub(super) fn refused(words: &str) -> Box<Diagnostic> {
-    Box::new(Diagnostic::new(Kind::Input, "E-FILTER-SETTING", printable(words)))
+    Box::new(Diagnostic::new("E-FILTER-SETTING", printable(words)))
 }

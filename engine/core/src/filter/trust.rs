@@ -5,7 +5,7 @@ use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
-use crate::diagnostic::{Diagnostic, Kind, Result, printable};
+use crate::diagnostic::{Diagnostic, Result, printable};
 
 /// The most bytes that a library or module may have.
 const LARGEST_FILE_BYTES: u64 = 256 << 20;
@@ -29,7 +29,7 @@ impl Trust {
         }
         let message = format!("'{}' is not the digest of a library", printable(digest));
         let help = "write sha256: and all 64 hexadecimal digits, in lower case; `engine plugins` prints them";
-        Diagnostic::new(Kind::Usage, "E-NATIVE-DIGEST", message).help(help).into()
+        Diagnostic::new("E-NATIVE-DIGEST", message).help(help).fail()
     }
 
     /// Allows what a trust file names: `native = ["sha256:..."]` in TOML.
@@ -41,7 +41,7 @@ impl Trust {
         let shown = printable(&path.display().to_string());
         let wrong = |why: &str| {
             let help = "write for example: native = [\"sha256:...\"], with all 64 digits";
-            Box::new(Diagnostic::new(Kind::Input, "E-TRUST-FILE", format!("'{shown}': {why}")).help(help))
+            Box::new(Diagnostic::new("E-TRUST-FILE", format!("'{shown}': {why}")).help(help))
         };
         let table: toml::Table = toml::from_str(&text).map_err(|error| wrong(error.message()))?;
         let Some(native) = table.get("native") else { return Ok(()) };
@@ -72,7 +72,7 @@ impl Trust {
             "a native filter can do all that you can do: read, change and send your files. If you trust it: \
              --allow-native=sha256:{digest}"
         );
-        Diagnostic::new(Kind::Trust, code, message).help(help).into()
+        Diagnostic::new(code, message).help(help).fail()
     }
 }
 
@@ -83,7 +83,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
     if length > LARGEST_FILE_BYTES {
         let shown = printable(&path.display().to_string());
         let message = format!("'{shown}' has {length} bytes; a filter may have {LARGEST_FILE_BYTES}");
-        return Diagnostic::new(Kind::Limit, "E-FILTER-SIZE", message).into();
+        return Diagnostic::new("E-FILTER-SIZE", message).fail();
     }
     std::fs::read(path).map_err(failed)
 }
@@ -100,6 +100,7 @@ pub(super) fn sha256(bytes: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnostic::Kind;
 
     #[test]
     fn only_whole_digests_are_taken() {
@@ -119,7 +120,7 @@ mod tests {
         let digest = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
         let mut trust = Trust::default();
         let error = trust.read(&path).err().unwrap();
-        assert_eq!((error.code, error.kind), ("E-NATIVE-DENIED", Kind::Trust));
+        assert_eq!((error.code, error.kind()), ("E-NATIVE-DENIED", Kind::Trust));
         assert!(error.help.unwrap().ends_with(&format!("--allow-native=sha256:{digest}")));
         let file = folder.path().join("trust.toml");
         std::fs::write(&file, format!("native = [\"sha256:{digest}\"]\n")).unwrap();

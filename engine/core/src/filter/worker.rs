@@ -16,7 +16,7 @@ use super::running::{Running, check_frames, failed, refused};
 use super::trust::Trust;
 use super::wire::{Reply, Request, read_reply, write_request};
 use super::{library, native};
-use crate::diagnostic::{Diagnostic, Kind, Result, printable};
+use crate::diagnostic::{Diagnostic, Result, printable};
 
 /// How long a library may take to load, or to create an instance.
 const START: Duration = Duration::from_secs(5);
@@ -58,14 +58,14 @@ impl Launch {
         let shown = printable(&self.path.display().to_string());
         let broken = |why: String| {
             let message = format!("'{shown}' broke down while it was loaded: {why}");
-            Box::new(Diagnostic::new(Kind::Limit, "E-FILTER-CRASH", message))
+            Box::new(Diagnostic::new("E-FILTER-CRASH", message))
         };
         let described = match worker.receive(START) {
             Ok(Reply::Done(described)) => described,
             Ok(Reply::Failed(words)) => {
                 let (what, help) = words.split_once('\n').unwrap_or((&words, ""));
-                let error = Diagnostic::new(Kind::Input, "E-NATIVE-ABI", printable(what));
-                return error.help(printable(help)).into();
+                let error = Diagnostic::new("E-NATIVE-ABI", printable(what));
+                return error.help(printable(help)).fail();
             }
             Ok(Reply::Panicked(words)) => return Err(broken(printable(&words))),
             Err(why) => return Err(broken(why)),

@@ -10,7 +10,7 @@ use super::spoilt::Spoilt;
 use super::tree::{Known, Tree, tree};
 use super::unread::Unread;
 use super::{explain, names, readings, rehearsal, sandbox, syntax, top_level};
-use crate::diagnostic::{Diagnostic, Kind, Mistakes, Result, SourceText, printable};
+use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, printable};
 use crate::settings::Settings;
 use rhai::{AST, Module, Scope};
 use std::collections::{BTreeMap, BTreeSet};
@@ -178,6 +178,6 @@ fn has_function(ast: &AST, name: &str) -> bool {
 fn empty(code: &Code) -> Diagnostic {
     let path = printable(&code.source.path.display().to_string());
     let message = format!("'{path}' has neither a rule nor 'fn reward': nothing could be learned");
-    Diagnostic::new(Kind::Input, "E-SCRIPT-EMPTY", message)
+    Diagnostic::new("E-SCRIPT-EMPTY", message)
         .help("write a rule: rule \"too close\" when laser.nearest < 0.25 => -1 then recover;")
 }

@@ -9,7 +9,7 @@ use super::readings::Part;
 use super::rule::{Clause, Rule, ScriptClause};
 use super::running;
 use super::views::{All, number, view};
-use crate::diagnostic::{Diagnostic, Kind, Result, nearest_name, printable};
+use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
 use rhai::{CallFnOptions, Dynamic, Map, Scope};
 use std::ops::Range;
 use std::sync::Arc;
@@ -44,7 +44,7 @@ impl Present {
         result.as_bool().map_err(|kind| {
             let message = "a condition must be true or false";
             let label = format!("this is {}", explain::plain_kind(kind));
-            let wrong = Diagnostic::new(Kind::Input, "E-SCRIPT-RULE", message);
+            let wrong = Diagnostic::new("E-SCRIPT-RULE", message);
             Box::new(
                 wrong
                     .at(&self.loaded.code.source, rule.condition_span.clone(), label)
@@ -61,7 +61,7 @@ impl Present {
         let result = self.run(script)?;
         number(&result).ok_or_else(|| {
             let label = format!("this is {}", explain::plain_kind(result.type_name()));
-            let wrong = Diagnostic::new(Kind::Input, "E-SCRIPT-RULE", "a rule's value must be a number");
+            let wrong = Diagnostic::new("E-SCRIPT-RULE", "a rule's value must be a number");
             Box::new(
                 wrong.at(&self.loaded.code.source, rule.value_span.clone(), label).help("write a number, such as -1"),
             )
@@ -113,25 +113,25 @@ impl Present {
             return Ok(Verdict { reward, recover: false });
         }
         let wrong = |message: String| {
-            Diagnostic::new(Kind::Input, "E-REWARD-VALUE", message)
+            Diagnostic::new("E-REWARD-VALUE", message)
                 .at(&self.loaded.code.source, span.clone(), "defined here")
                 .help("return a number, or #{ value: -1, recover: true }")
         };
         let kind = explain::plain_kind(result.type_name());
         let Some(map) = result.try_cast::<Map>() else {
-            return wrong(format!("'fn reward' must return a number or a map, found {kind}")).into();
+            return wrong(format!("'fn reward' must return a number or a map, found {kind}")).fail();
         };
         if let Some(key) = map.keys().find(|key| !matches!(key.as_str(), "value" | "recover")) {
             let near = nearest_name(key, ["value", "recover"])
                 .map_or(String::new(), |near| format!("; did you mean '{near}'?"));
-            return wrong(format!("the map that 'fn reward' returned has a key '{}'{near}", printable(key))).into();
+            return wrong(format!("the map that 'fn reward' returned has a key '{}'{near}", printable(key))).fail();
         }
         let recover = map.get("recover").map_or(Ok(false), Dynamic::as_bool);
         match (map.get("value").and_then(number), recover) {
             (Some(reward), Ok(recover)) => Ok(Verdict { reward, recover }),
-            (None, _) => wrong("the map that 'fn reward' returned has no number as its 'value'".to_owned()).into(),
+            (None, _) => wrong("the map that 'fn reward' returned has no number as its 'value'".to_owned()).fail(),
             (_, Err(_)) => {
-                wrong("'recover' in the map that 'fn reward' returned must be true or false".to_owned()).into()
+                wrong("'recover' in the map that 'fn reward' returned must be true or false".to_owned()).fail()
             }
         }
     }
@@ -140,7 +140,7 @@ impl Present {
     pub(super) fn not_finite(&self, what: &str, value: f64, span: Range<usize>) -> Diagnostic {
         let value = if value.is_nan() { "no number (NaN)".to_owned() } else { value.to_string() };
         let message = format!("{what} gave {value} as its value");
-        Diagnostic::new(Kind::Input, "E-REWARD-VALUE", message)
+        Diagnostic::new("E-REWARD-VALUE", message)
             .at(&self.loaded.code.source, span, format!("gave {value}"))
             .help("look for a division by 0, or the root or logarithm of a negative number")
     }

@@ -5,7 +5,7 @@ use super::functions::FUNCTIONS;
 use super::sandbox;
 use super::setup::SETUP;
 use super::syntax::OURS;
-use crate::diagnostic::{Diagnostic, Kind, SourceText, nearest_name, printable};
+use crate::diagnostic::{Diagnostic, SourceText, nearest_name, printable};
 use rhai::{LexError, ParseError, ParseErrorType, Position};
 
 /// The byte offset of a position; the end if it has none.
@@ -34,7 +34,7 @@ fn mistake_at(
     message: impl Into<String>,
     label: impl Into<String>,
 ) -> Diagnostic {
-    Diagnostic::new(Kind::Input, code, message).at(source, source.word_at(at), label)
+    Diagnostic::new(code, message).at(source, source.word_at(at), label)
 }
 
 /// An error of the parser.
@@ -152,9 +152,7 @@ pub(super) fn unknown_function_at(source: &SourceText, at: usize, name: &str, ow
 }
 
 pub(super) fn limit(source: &SourceText, position: Position, message: String) -> Diagnostic {
-    let mut diagnostic = mistake(source, "E-SCRIPT-LIMIT", position, message, "stopped here");
-    diagnostic.kind = Kind::Limit;
-    diagnostic
+    mistake(source, "E-SCRIPT-LIMIT", position, message, "stopped here")
 }
 
 /// A kind of value in plain words.

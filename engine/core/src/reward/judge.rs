@@ -7,7 +7,7 @@ use super::expression::Slot;
 use super::facts::Facts;
 use super::readings::{self, Evidence};
 use super::views::{number, wrong_length};
-use crate::diagnostic::{Diagnostic, Kind, Result};
+use crate::diagnostic::{Diagnostic, Result};
 use rhai::{Dynamic, Map};
 use std::sync::Arc;
 
@@ -68,12 +68,11 @@ impl Judge {
         if !is_kept {
             let found = explain::plain_kind(result.type_name());
             return Diagnostic::new(
-                Kind::Input,
                 "E-SCRIPT-REWARD",
                 format!("'fn calibrate' must return a number, an array or a map, found {found}"),
             )
             .at(source, span, "defined here")
-            .into();
+            .fail();
         }
         present.slots = loaded.needs.slots.iter().map(|key| slot(&result, key)).collect();
         for wanted in &loaded.needs.slot_uses {
@@ -84,7 +83,7 @@ impl Judge {
                 (_, Some(_)) => "'fn calibrate' has not returned an array of numbers for this".to_owned(),
                 (_, None) => "'fn calibrate' has not returned a number for this".to_owned(),
             };
-            return explain::mistake(source, "E-SCRIPT-REWARD", wanted.position, message, "needed here").into();
+            return explain::mistake(source, "E-SCRIPT-REWARD", wanted.position, message, "needed here").fail();
         }
         present.calibrated = Some(Arc::new(result));
         Ok(())
@@ -112,7 +111,7 @@ impl Judge {
             held[index] = 0;
             let value = present.value(rule)?;
             if !value.is_finite() {
-                return present.not_finite(&rule.shown(), value, rule.value_span.clone()).into();
+                return present.not_finite(&rule.shown(), value, rule.value_span.clone()).fail();
             }
             fired[index] = Some(value);
             verdict.reward += value;
@@ -124,7 +123,7 @@ impl Judge {
         if let Some(span) = &present.loaded.reward {
             let own = present.reward(span)?;
             if !own.reward.is_finite() {
-                return present.not_finite("'fn reward'", own.reward, span.clone()).into();
+                return present.not_finite("'fn reward'", own.reward, span.clone()).fail();
             }
             fired[rules.len()] = Some(own.reward);
             verdict.reward += own.reward;
@@ -171,14 +170,14 @@ impl Judge {
     }
 
     fn check_facts(&self) -> Result<()> {
-        let wrong = |message: String| Diagnostic::new(Kind::State, "E-REWARD-FACTS", message);
+        let wrong = |message: String| Diagnostic::new("E-REWARD-FACTS", message);
         if self.present.facts.ranges_m.len() != self.beams {
             let message =
                 format!("the judge was made for {} beams, found {}", self.beams, self.present.facts.ranges_m.len());
-            return wrong(message).into();
+            return wrong(message).fail();
         }
         if self.present.calibrated.is_none() {
-            return wrong("the script has not been calibrated yet".to_owned()).into();
+            return wrong("the script has not been calibrated yet".to_owned()).fail();
         }
         self.present.loaded.check_cells(self.present.facts.grid)
     }

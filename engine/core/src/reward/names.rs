@@ -75,7 +75,7 @@ impl Names<'_> {
     fn own_functions(&mut self) {
         for (name, arguments) in self.own.clone() {
             let span = || self.code.function(&name).unwrap_or(0..0);
-            let at = |code, message: String| Diagnostic::new(crate::diagnostic::Kind::Input, code, message);
+            let at = |code, message: String| Diagnostic::new(code, message);
             let taken = FUNCTIONS.iter().any(|row| row.name == name) || SETUP.iter().any(|row| row.name == name);
             if taken {
                 let wrong = at("E-SCRIPT-NAME", format!("'{name}' is the name of one of the engine's functions"));

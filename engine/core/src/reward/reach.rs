@@ -4,7 +4,7 @@ use super::expression::{Arithmetic, Comparison, Flag, Number};
 use super::fact_table::Reach;
 use super::facts::{Facts, decimal};
 use super::rule::{Clause, Rule};
-use crate::diagnostic::{Diagnostic, Kind, Result, SourceText};
+use crate::diagnostic::{Diagnostic, Result, SourceText};
 use crate::settings::LaserSettings;
 
 type Interval = (f64, f64);
@@ -62,10 +62,10 @@ pub(super) fn check(source: &SourceText, rule: &Rule, limits: &Limits) -> Result
         }
         false => "ranges are in metres, shares from 0 to 1, angles in radians",
     };
-    Diagnostic::new(Kind::Input, "E-SCRIPT-RULE", format!("{} can never fire", rule.shown()))
+    Diagnostic::new("E-SCRIPT-RULE", format!("{} can never fire", rule.shown()))
         .at(source, rule.condition_span.clone(), why)
         .help(help)
-        .into()
+        .fail()
 }
 
 /// Why a condition never holds; nothing if it can.

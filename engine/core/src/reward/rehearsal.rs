@@ -61,7 +61,7 @@ fn everything(judge: &Judge, spoilt: &Spoilt, mistakes: &mut Mistakes) -> Result
 /// Whether it went well, or failed by chance.
 fn certain<T>(result: Result<T>, mistakes: &mut Mistakes) -> Result<bool> {
     match result {
-        Err(wrong) if wrong.kind == Kind::Limit => Err(wrong),
+        Err(wrong) if wrong.kind() == Kind::Limit => Err(wrong),
         Err(wrong) if wrong.code != "E-SCRIPT-RUN" => {
             mistakes.add(*wrong);
             Ok(false)

@@ -7,7 +7,7 @@ use super::readings::{self, Part};
 use super::source::Code;
 use super::spoilt::Spoilt;
 use super::syntax::{TimeUnit, WrittenRule};
-use crate::diagnostic::{Diagnostic, Kind, Mistakes, Result, printable};
+use crate::diagnostic::{Diagnostic, Mistakes, Result, printable};
 use rhai::{AST, ASTNode, Expr, Module, Position, Shared, Stmt};
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -124,7 +124,7 @@ impl Rule {
 }
 
 fn wrong(code: &Code, message: &str, span: &Range<usize>, label: &str) -> Diagnostic {
-    Diagnostic::new(Kind::Input, "E-SCRIPT-RULE", message).at(&code.source, span.clone(), label)
+    Diagnostic::new("E-SCRIPT-RULE", message).at(&code.source, span.clone(), label)
 }
 
 fn condition(
@@ -139,7 +139,7 @@ fn condition(
         None => Ok(Clause::Script(script(written, written.condition, library))),
         Some(_) => wrong(code, "a condition must be true or false", span, "this is a number")
             .help("compare it: laser.nearest < 0.25")
-            .into(),
+            .fail(),
     }
 }
 
@@ -152,12 +152,12 @@ fn value(
 ) -> Result<Clause<Number>> {
     match compiler.clause(written.value) {
         Some(Typed::Number(Number::Constant(value)) | Typed::Whole(Number::Constant(value))) if !value.is_finite() => {
-            wrong(code, "a rule's value must be a finite number", span, "too large").into()
+            wrong(code, "a rule's value must be a finite number", span, "too large").fail()
         }
         Some(Typed::Number(number) | Typed::Whole(number)) => Ok(Clause::Native(number)),
         Some(Typed::Flag(_)) => wrong(code, "a rule's value must be a number", span, "this is true or false")
             .help("write a number, such as -1")
-            .into(),
+            .fail(),
         None => Ok(Clause::Script(script(written, written.value, library))),
     }
 }
@@ -179,23 +179,22 @@ fn persistence(code: &Code, written: &WrittenRule<'_>, compiler: &mut Compiler<'
         return Ok(Persistence::Steps(1));
     };
     let span = span(code, time);
-    let wrong = |message: &str, label: String| {
-        Diagnostic::new(Kind::Input, "E-SCRIPT-RULE", message).at(&code.source, span.clone(), label)
-    };
+    let wrong =
+        |message: &str, label: String| Diagnostic::new("E-SCRIPT-RULE", message).at(&code.source, span.clone(), label);
     let number = match compiler.expression(time) {
         Some(Typed::Number(Number::Constant(number)) | Typed::Whole(Number::Constant(number))) => number,
-        _ => return wrong("the time of a rule must be a plain number", "found something else".to_owned()).into(),
+        _ => return wrong("the time of a rule must be a plain number", "found something else".to_owned()).fail(),
     };
     if !(number > 0.0 && number <= MAX_TIME) {
         let message = format!("the time of a rule must be greater than 0 and at most {MAX_TIME}");
-        return wrong(&message, format!("found {number}")).help("leave out 'for ...' to fire at once").into();
+        return wrong(&message, format!("found {number}")).help("leave out 'for ...' to fire at once").fail();
     }
     match unit {
         TimeUnit::Seconds => Ok(Persistence::Seconds(number)),
         TimeUnit::Steps if number.fract() == 0.0 => Ok(Persistence::Steps(number as u32)),
         TimeUnit::Steps => wrong("steps are counted in whole numbers", format!("found {number}"))
             .help("write 'seconds' instead")
-            .into(),
+            .fail(),
     }
 }
 

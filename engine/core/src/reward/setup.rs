@@ -4,7 +4,7 @@ use super::explain;
 use super::source::Code;
 use super::unread::Unread;
 use super::views::number;
-use crate::diagnostic::{Diagnostic, Kind, Mistakes, Result, printable};
+use crate::diagnostic::{Diagnostic, Mistakes, Result, printable};
 use crate::geometry::Twist;
 use crate::settings::{self, FilterSettings, PolicySettings, Settings, Value};
 use rhai::{AST, ASTNode, Dynamic, Engine, Expr, FnCallExpr, Map, NativeCallContext, Position, Stmt};
@@ -212,7 +212,7 @@ impl Setup<'_> {
 
     fn wrong<T>(&self, position: Position, message: String, label: &str, form: &str) -> Result<T> {
         let diagnostic = explain::mistake(&self.code.source, "E-SCRIPT-SETTING", position, message, label);
-        diagnostic.help(format!("write {form}")).into()
+        diagnostic.help(format!("write {form}")).fail()
     }
 
     fn word(&self, value: Dynamic, form: &str) -> Result<String> {
@@ -228,10 +228,10 @@ impl Setup<'_> {
         let span = source.word_at(explain::offset(source, position));
         if let Some(before) = self.places.get(&setting) {
             let (line, _) = source.position(before.start);
-            return Diagnostic::new(Kind::Input, "E-SCRIPT-SETTING", format!("'{setting}' is set twice"))
+            return Diagnostic::new("E-SCRIPT-SETTING", format!("'{setting}' is set twice"))
                 .at(source, span, "the second time")
                 .help(format!("keep one of the two; the first is in line {line}"))
-                .into();
+                .fail();
         }
         self.places.insert(setting, span);
         Ok(())
@@ -283,7 +283,7 @@ impl Setup<'_> {
             let source = &self.code.source;
             let mut wrong = explain::mistake(source, "E-SCRIPT-SETTING", position, error.message, error.found);
             wrong.help = error.help;
-            return wrong.into();
+            return wrong.fail();
         }
         self.mark(format!("{group}.{key}"), position)
     }

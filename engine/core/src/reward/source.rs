@@ -1,6 +1,6 @@
 //! The text of a script: read from disk, checked for what must not be in it, and its plain code.
 
-use crate::diagnostic::{Diagnostic, Kind, Mistakes, Result, SourceText, nearest_name, printable};
+use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, nearest_name, printable};
 use std::ops::Range;
 use std::path::Path;
 
@@ -12,32 +12,30 @@ pub(super) const MAX_BYTES: u64 = 1 << 20;
 /// # Errors
 /// If there is no such file (with the near names in its folder), or it is no text that can be a script.
 pub(super) fn read(path: &Path) -> Result<SourceText> {
-    let wrong = |message: String| Diagnostic::new(Kind::Input, "E-SCRIPT-FILE", message);
+    let wrong = |message: String| Diagnostic::new("E-SCRIPT-FILE", message);
     let shown = printable(&path.display().to_string());
     let metadata = match std::fs::metadata(path) {
         Ok(metadata) => metadata,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            return wrong(format!("there is no script '{shown}'")).help(near_files(path)).into();
+            return wrong(format!("there is no script '{shown}'")).help(near_files(path)).fail();
         }
         Err(error) => return Err(unreadable(path, &error)),
     };
     if metadata.is_dir() {
         let help = near_files(&path.join("script.rhai"));
-        return wrong(format!("'{shown}' is a folder, not a script")).help(help).into();
+        return wrong(format!("'{shown}' is a folder, not a script")).help(help).fail();
     }
     if !metadata.is_file() {
-        return wrong(format!("'{shown}' is not an ordinary file")).into();
+        return wrong(format!("'{shown}' is not an ordinary file")).fail();
     }
     if metadata.len() > MAX_BYTES {
         let message = format!("'{shown}' is too long for a script: {} bytes, at most {MAX_BYTES}", metadata.len());
-        return Diagnostic::new(Kind::Input, "E-SCRIPT-SOURCE", message).into();
+        return Diagnostic::new("E-SCRIPT-SOURCE", message).fail();
     }
     let bytes = std::fs::read(path).map_err(|error| unreadable(path, &error))?;
     if let Some(form) = other_form(&bytes) {
         let message = format!("'{shown}' is {form}, not a script");
-        return Diagnostic::new(Kind::Input, "E-SCRIPT-SOURCE", message)
-            .help("a script is a text file, '.rhai'")
-            .into();
+        return Diagnostic::new("E-SCRIPT-SOURCE", message).help("a script is a text file, '.rhai'").fail();
     }
     match String::from_utf8(bytes) {
         Ok(text) => Ok(SourceText::new(path, text)),
@@ -45,14 +43,13 @@ pub(super) fn read(path: &Path) -> Result<SourceText> {
             let valid = error.utf8_error().valid_up_to();
             let line = error.as_bytes()[..valid].iter().filter(|&&byte| byte == b'\n').count() + 1;
             let message = format!("'{shown}' is not UTF-8 text: line {line} has a byte that is no character");
-            Diagnostic::new(Kind::Input, "E-SCRIPT-SOURCE", message).help("save the file as UTF-8").into()
+            Diagnostic::new("E-SCRIPT-SOURCE", message).help("save the file as UTF-8").fail()
         }
     }
 }
 
 fn unreadable(path: &Path, error: &std::io::Error) -> Box<Diagnostic> {
     let mut diagnostic = Diagnostic::disk("read", path, error);
-    diagnostic.kind = Kind::Input;
     diagnostic.code = "E-SCRIPT-FILE";
     Box::new(diagnostic)
 }
@@ -113,7 +110,7 @@ pub(super) fn check(source: SourceText) -> Result<Code> {
     };
     if source.text.len() as u64 > MAX_BYTES {
         let message = format!("the script is too long: {} bytes, at most {MAX_BYTES}", source.text.len());
-        return Diagnostic::new(Kind::Input, "E-SCRIPT-SOURCE", message).into();
+        return Diagnostic::new("E-SCRIPT-SOURCE", message).fail();
     }
     check_characters(&source)?;
     let parsed = match source.text.strip_prefix("#!") {
@@ -141,7 +138,7 @@ fn check_characters(source: &SourceText) -> Result<()> {
         };
         if !told && mistakes.wants(source, offset) {
             told = true;
-            let wrong = Diagnostic::new(Kind::Input, "E-SCRIPT-SOURCE", format!("the script holds {what}"));
+            let wrong = Diagnostic::new("E-SCRIPT-SOURCE", format!("the script holds {what}"));
             let label = format!("character {}", c.escape_unicode());
             mistakes.add(wrong.at(source, offset..offset + c.len_utf8(), label).help("delete it"));
         }
@@ -189,10 +186,10 @@ fn plain_code(source: &SourceText, text: &str) -> Result<String> {
 }
 
 fn unfinished(source: &SourceText, span: Range<usize>, what: &str, end: &str) -> Result<String> {
-    Diagnostic::new(Kind::Input, "E-SCRIPT-SYNTAX", format!("this {what} never ends"))
+    Diagnostic::new("E-SCRIPT-SYNTAX", format!("this {what} never ends"))
         .at(source, span, "begins here")
         .help(format!("write {end} where it ends"))
-        .into()
+        .fail()
 }
 
 fn comment_length(text: &[u8]) -> Option<usize> {

@@ -55,7 +55,7 @@ pub(super) fn run(
 
 fn add(code: &Code, error: &EvalAltResult, log: &Log, mistakes: &mut Mistakes) -> Result<(), Diagnostic> {
     let wrong = running::explain(&code.source, error);
-    if wrong.kind == Kind::Limit || log.is_full() {
+    if wrong.kind() == Kind::Limit || log.is_full() {
         return Err(wrong);
     }
     mistakes.add(wrong);

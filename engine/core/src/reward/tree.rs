@@ -62,7 +62,7 @@ fn few_definitions(code: &Code) -> Result<(), Diagnostic> {
     let mut words = code.plain.split(|c| !part(c)).filter(|word| matches!(*word, "let" | "const"));
     let Some(word) = words.nth(MOST_DEFINITIONS) else { return Ok(()) };
     let at = word.as_ptr().addr() - code.plain.as_ptr().addr();
-    Err(Diagnostic::new(Kind::Limit, "E-SCRIPT-LIMIT", "there are too many variables".to_owned())
+    Err(Diagnostic::new("E-SCRIPT-LIMIT", "there are too many variables".to_owned())
         .at(&code.source, at..at + word.len(), "one too many")
         .help(format!("a script may define {MOST_DEFINITIONS}, and have {MAX_VARIABLES} at one time")))
 }
@@ -82,7 +82,7 @@ fn parsed(engine: &Engine, code: &Code, mistakes: &mut Mistakes) -> Result<Parse
         let mistake = explain::syntax(&code.source, &error, &[]);
         let at = explain::offset(&code.source, error.position());
         let statement = statement_around(&code.plain, at).filter(|found| !lost.contains(found));
-        let Some(statement) = statement.filter(|_| times > 0 && mistake.kind != Kind::Limit) else {
+        let Some(statement) = statement.filter(|_| times > 0 && mistake.kind() != Kind::Limit) else {
             return Err(mistake);
         };
         mistakes.add(mistake);

@@ -1,6 +1,6 @@
 //! The paper's recovery function: after a failure, back to a safe pose.
 
-use crate::diagnostic::{Diagnostic, Kind, Result};
+use crate::diagnostic::{Diagnostic, Result};
 use crate::geometry::{Point2, Pose};
 use crate::random::{Random, Stream};
 use crate::settings::RecoverySettings;
@@ -107,7 +107,7 @@ impl Recovery {
             ("start and route pose", "move the starts or the route away from walls, boxes and edges")
         };
         let message = format!("the robot cannot recover: every {places} of world '{name}' is blocked");
-        Box::new(Diagnostic::new(Kind::Input, "E-RECOVERY-BLOCKED", message).help(help))
+        Box::new(Diagnostic::new("E-RECOVERY-BLOCKED", message).help(help))
     }
 }
 
@@ -130,7 +130,7 @@ fn no_mover(layout: &Layout) -> Box<Diagnostic> {
 /// An error about something that a world file does not have.
 fn ends(layout: &Layout, code: &'static str, message: String) -> Diagnostic {
     let end = layout.source.text.len();
-    Diagnostic::new(Kind::Input, code, message).at(&layout.source, end..end, "the file ends here")
+    Diagnostic::new(code, message).at(&layout.source, end..end, "the file ends here")
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use image::imageops::{FilterType, crop_imm, resize};
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, RgbImage};
 
 use super::observation::Image;
-use crate::diagnostic::{Diagnostic, Kind, Result, nearest_name, printable};
+use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
 use filter_api::Format;
 
 /// The largest file that is read, bytes.
@@ -29,7 +29,7 @@ pub fn photograph_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
         if path.is_dir() {
             files.extend(folder(path)?);
         } else if std::fs::metadata(path).is_err_and(|error| error.kind() == std::io::ErrorKind::NotFound) {
-            return missing(path).into();
+            return missing(path).fail();
         } else {
             files.push(path.clone());
         }
@@ -41,9 +41,9 @@ fn folder(path: &Path) -> Result<Vec<PathBuf>> {
     let files = names(path).map_err(|error| unreadable(path, &error))?;
     if files.is_empty() {
         let message = format!("the folder '{}' holds no PNG or JPEG file", shown(path));
-        return Diagnostic::new(Kind::Input, "E-IMAGE-FILE", message)
+        return Diagnostic::new("E-IMAGE-FILE", message)
             .help("files must end in .png, .jpg or .jpeg; folders within it are not searched")
-            .into();
+            .fail();
     }
     Ok(files)
 }
@@ -73,7 +73,7 @@ fn missing(path: &Path) -> Diagnostic {
         None => "give a PNG or JPEG file, or a folder of them".to_owned(),
     };
     let message = format!("there is no image '{}'", shown(path));
-    Diagnostic::new(Kind::Input, "E-IMAGE-FILE", message).help(help)
+    Diagnostic::new("E-IMAGE-FILE", message).help(help)
 }
 
 /// Reads a PNG or JPEG file as an image of `width_px` times `height_px`: turned upright as its EXIF data say, cropped
@@ -93,7 +93,7 @@ fn read(path: &Path) -> Result<Vec<u8>> {
     let metadata = std::fs::metadata(path).map_err(|error| unreadable(path, &error))?;
     if !metadata.is_file() {
         let message = format!("'{}' is not an ordinary file", shown(path));
-        return Diagnostic::new(Kind::Input, "E-IMAGE-FILE", message).into();
+        return Diagnostic::new("E-IMAGE-FILE", message).fail();
     }
     let mut bytes = Vec::new();
     // The file may have grown since its length was asked for.
@@ -102,7 +102,7 @@ fn read(path: &Path) -> Result<Vec<u8>> {
         file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(|error| unreadable(path, &error))?;
     }
     if metadata.len().max(bytes.len() as u64) > MAX_FILE_BYTES {
-        return too_large(path, &format!("{} MiB", metadata.len().div_ceil(1 << 20))).into();
+        return too_large(path, &format!("{} MiB", metadata.len().div_ceil(1 << 20))).fail();
     }
     Ok(bytes)
 }
@@ -112,7 +112,7 @@ fn decode(path: &Path, bytes: &[u8]) -> Result<RgbImage> {
         ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| unreadable(path, &error))?;
     let format = match reader.format() {
         Some(format @ (ImageFormat::Png | ImageFormat::Jpeg)) => format,
-        other => return foreign(path, bytes, other).into(),
+        other => return foreign(path, bytes, other).fail(),
     };
     let name = if format == ImageFormat::Png { "PNG" } else { "JPEG" };
     let failed = |error: ImageError| match error {
@@ -125,11 +125,11 @@ fn decode(path: &Path, bytes: &[u8]) -> Result<RgbImage> {
     let mut decoder = reader.into_decoder().map_err(failed)?;
     let (width, height) = decoder.dimensions();
     if u64::from(width) * u64::from(height) > MAX_PIXELS {
-        return too_large(path, &format!("{width}x{height} pixels")).into();
+        return too_large(path, &format!("{width}x{height} pixels")).fail();
     }
     // The decoder fills what is missing with grey and says nothing.
     if width == 0 || height == 0 || (format == ImageFormat::Jpeg && !jpeg_ends(bytes)) {
-        return damaged(path, name).into();
+        return damaged(path, name).fail();
     }
     let orientation = decoder.orientation().map_err(failed)?;
     let mut image = DynamicImage::from_decoder(decoder).map_err(failed)?;
@@ -179,13 +179,13 @@ fn shown(path: &Path) -> String {
 
 fn unreadable(path: &Path, error: &std::io::Error) -> Box<Diagnostic> {
     let mut diagnostic = Diagnostic::disk("read", path, error);
-    (diagnostic.kind, diagnostic.code) = (Kind::Input, "E-IMAGE-FILE");
+    diagnostic.code = "E-IMAGE-FILE";
     Box::new(diagnostic)
 }
 
 fn damaged(path: &Path, format: &str) -> Diagnostic {
     let message = format!("'{}' begins as a {format} image, but is damaged or ends too early", shown(path));
-    Diagnostic::new(Kind::Input, "E-IMAGE-FILE", message).help("copy it from the camera again, or leave it out")
+    Diagnostic::new("E-IMAGE-FILE", message).help("copy it from the camera again, or leave it out")
 }
 
 fn too_large(path: &Path, found: &str) -> Diagnostic {
@@ -195,7 +195,7 @@ fn too_large(path: &Path, found: &str) -> Diagnostic {
         MAX_FILE_BYTES >> 20,
         MAX_PIXELS / 1_000_000
     );
-    Diagnostic::new(Kind::Input, "E-IMAGE-LIMIT", message).help("make it smaller first")
+    Diagnostic::new("E-IMAGE-LIMIT", message).help("make it smaller first")
 }
 
 fn foreign(path: &Path, bytes: &[u8], format: Option<ImageFormat>) -> Diagnostic {
@@ -206,5 +206,5 @@ fn foreign(path: &Path, bytes: &[u8], format: Option<ImageFormat>) -> Diagnostic
         None => "is no image".to_owned(),
     };
     let message = format!("'{}' {what}, not PNG or JPEG", shown(path));
-    Diagnostic::new(Kind::Input, "E-IMAGE-FORMAT", message).help("save the photograph as PNG or JPEG")
+    Diagnostic::new("E-IMAGE-FORMAT", message).help("save the photograph as PNG or JPEG")
 }

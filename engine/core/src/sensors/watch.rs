@@ -2,7 +2,7 @@
 
 use super::camera::Camera;
 use super::observation::Image;
-use crate::diagnostic::{Diagnostic, Kind, Result};
+use crate::diagnostic::{Diagnostic, Result};
 use crate::geometry::{Isometry3, rotation};
 use crate::world::scene::Solid;
 use nalgebra::{Translation3, UnitQuaternion};
@@ -59,10 +59,10 @@ impl CameraWatch {
         let (blank, frozen) = (self.blank, self.frozen);
         (self.images, self.blank, self.frozen) = (0, true, true);
         if blank {
-            return blank_error(format!("the camera showed one colour in each of the last {WINDOW} images")).into();
+            return blank_error(format!("the camera showed one colour in each of the last {WINDOW} images")).fail();
         }
         if frozen {
-            return frozen_error(format!("the camera's image did not change in {WINDOW} moves of the robot")).into();
+            return frozen_error(format!("the camera's image did not change in {WINDOW} moves of the robot")).fail();
         }
         Ok(())
     }
@@ -91,10 +91,10 @@ pub fn self_test(camera: &mut Camera, world_from_robot: &Isometry3, moving: &[So
     }
     camera.set_frames(frames);
     if blank {
-        return blank_error(format!("the camera shows one colour only, in each of {HEADINGS} headings")).into();
+        return blank_error(format!("the camera shows one colour only, in each of {HEADINGS} headings")).fail();
     }
     if frozen {
-        return frozen_error("the camera's image stays the same when the robot turns".to_owned()).into();
+        return frozen_error("the camera's image stays the same when the robot turns".to_owned()).fail();
     }
     Ok(())
 }
@@ -106,14 +106,14 @@ fn is_blank(image: &Image) -> bool {
 }
 
 fn blank_error(message: String) -> Diagnostic {
-    Diagnostic::new(Kind::Limit, "E-CAMERA-BLANK", message).help(
+    Diagnostic::new("E-CAMERA-BLANK", message).help(
         "check 'camera.tilt_deg' and 'camera.height_m', and that the world has something to see: \
          walls, obstacles or a textured floor",
     )
 }
 
 fn frozen_error(message: String) -> Diagnostic {
-    Diagnostic::new(Kind::Limit, "E-CAMERA-FROZEN", message).help(
+    Diagnostic::new("E-CAMERA-FROZEN", message).help(
         "check that the robot's start is not inside a solid, and that the world looks different from place to place",
     )
 }

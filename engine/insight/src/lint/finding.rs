@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
+use engine::diagnostic::Diagnostic;
 pub use engine::diagnostic::Severity;
-use engine::diagnostic::{Diagnostic, Kind};
 use engine::experiment::Plan;
 
 /// One thing that is wrong or suspicious.
@@ -55,7 +55,7 @@ impl Finding {
     /// For a terminal: the line with its caret.
     #[must_use]
     pub fn diagnostic(&self, plan: &Plan) -> Diagnostic {
-        let diagnostic = Diagnostic::new(Kind::Input, self.code, self.message.clone()).help(self.help.clone());
+        let diagnostic = Diagnostic::new(self.code, self.message.clone()).help(self.help.clone());
         diagnostic.at(plan.behaviour.source(), self.span.clone(), self.label.clone())
     }
 }

@@ -91,7 +91,7 @@ fn look(plan: &Plan, threads: usize, stop: &AtomicBool) -> Result<Report> {
                 exploits = Some(found);
             }
             // The script's own mistake is a finding like others; what a limit stopped is none.
-            Err(fault) if fault.kind == Kind::Input => findings.push(Finding::of_error(plan, &fault)),
+            Err(fault) if fault.kind() == Kind::Input => findings.push(Finding::of_error(plan, &fault)),
             Err(fault) => return Err(fault),
         }
     }

@@ -4,7 +4,7 @@ use sha2::{Digest, Sha256};
 
 use super::Document;
 use crate::report::base64;
-use engine::diagnostic::{Diagnostic, Kind, Result};
+use engine::diagnostic::{Diagnostic, Result};
 
 const HTML: &str = include_str!("web/index.html");
 const STYLE: &str = include_str!("web/style.css");
@@ -37,9 +37,8 @@ pub struct Page {
 /// # Errors
 /// Never in practice: only if the document cannot be written as JSON.
 pub fn page(document: Option<&Document>) -> Result<Page> {
-    let data = serde_json::to_string(&document).map_err(|error| {
-        Box::new(Diagnostic::new(Kind::Disk, "E-IO", format!("cannot write the data of the page: {error}")))
-    })?;
+    let data = serde_json::to_string(&document)
+        .map_err(|error| Box::new(Diagnostic::new("E-IO", format!("cannot write the data of the page: {error}"))))?;
     // Within a script element only "<" can end it or begin something else.
     let data = data.replace('<', "\\u003c");
     let script = SCRIPTS.concat();

@@ -6,7 +6,7 @@ use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder, ImageResult};
 
 use crate::report::base64;
-use engine::diagnostic::{Diagnostic, Kind, Result};
+use engine::diagnostic::{Diagnostic, Result};
 
 /// The quality of camera images: pixel noise would make them ten times as large without loss.
 const QUALITY: u8 = 82;
@@ -40,5 +40,5 @@ pub(super) fn data_address(pixels: &[u8], size_px: (usize, usize), format: Forma
 }
 
 fn failed(reason: &str) -> Box<Diagnostic> {
-    Box::new(Diagnostic::new(Kind::Disk, "E-PICTURE", format!("cannot draw a frame: {reason}")))
+    Box::new(Diagnostic::new("E-PICTURE", format!("cannot draw a frame: {reason}")))
 }

@@ -13,7 +13,7 @@
 
 use std::path::Path;
 
-use engine::diagnostic::{Diagnostic, Kind, Result};
+use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Ledger, Phase, Plan};
 
 #[cfg(feature = "mcap")]
@@ -47,8 +47,8 @@ pub fn record(plan: &Plan, seed: u64, phases: &[(Phase, &Ledger)], image_every: 
 /// If not: what to do.
 pub fn check(path: &Path) -> Result<()> {
     if cfg!(not(feature = "mcap")) {
-        let error = Diagnostic::new(Kind::Usage, "E-RECORD-BUILD", "this engine was built without recording");
-        return error.help("build it with: cargo build --release --features mcap").into();
+        let error = Diagnostic::new("E-RECORD-BUILD", "this engine was built without recording");
+        return error.help("build it with: cargo build --release --features mcap").fail();
     }
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if folder.is_dir() {

@@ -60,7 +60,7 @@ fn staging() -> tempfile::Builder<'static, 'static> {
 }
 
 fn wrong(error: FoxgloveError) -> Box<Diagnostic> {
-    Box::new(Diagnostic::new(Kind::Disk, "E-RECORD", format!("the recording cannot be written: {error}")))
+    Box::new(Diagnostic::new("E-RECORD", format!("the recording cannot be written: {error}")))
 }
 
 /// The channels of one recording.
@@ -209,8 +209,8 @@ impl Tape {
 fn png(pixels: &[u8], (width, height): (u32, u32), colour: ExtendedColorType) -> Result<Vec<u8>> {
     let mut bytes = Cursor::new(Vec::new());
     let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Fast, FilterType::Up);
-    encoder.write_image(pixels, width, height, colour).map_err(|error| {
-        Box::new(Diagnostic::new(Kind::Disk, "E-RECORD", format!("an image cannot be written: {error}")))
-    })?;
+    encoder
+        .write_image(pixels, width, height, colour)
+        .map_err(|error| Box::new(Diagnostic::new("E-RECORD", format!("an image cannot be written: {error}"))))?;
     Ok(bytes.into_inner())
 }

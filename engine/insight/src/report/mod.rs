@@ -2,7 +2,7 @@
 //!
 //! Every picture is laid out once on a list of marks and then written twice: as SVG text and as PNG bytes.
 
-use engine::diagnostic::{Diagnostic, Kind, Result};
+use engine::diagnostic::{Diagnostic, Result};
 
 mod atomic;
 mod axes;
@@ -58,7 +58,7 @@ impl Picture {
 
 /// A picture that could not be made, and why.
 fn failed(reason: &str) -> Box<Diagnostic> {
-    Box::new(Diagnostic::new(Kind::Disk, "E-PICTURE", format!("cannot draw the picture: {reason}")))
+    Box::new(Diagnostic::new("E-PICTURE", format!("cannot draw the picture: {reason}")))
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::policy_file::StoredPolicy;
 use super::read_stored;
-use engine::diagnostic::{Diagnostic, Kind, Result, SourceText, printable};
+use engine::diagnostic::{Diagnostic, Result, SourceText, printable};
 use engine::experiment::{Member, Plan};
 
 /// Reads every policy that the plan's script names, in its order.
@@ -23,7 +23,7 @@ pub fn load_members(plan: &Plan) -> Result<Vec<Member>> {
 pub fn members_from_texts(plan: &Plan, texts: Vec<SourceText>) -> Result<Vec<Member>> {
     if texts.len() != plan.settings.policies.len() {
         let message = format!("the run holds {} of {} policies", texts.len(), plan.settings.policies.len());
-        return Diagnostic::new(Kind::State, "E-RUN-FILE", message).help("run the behaviour again").into();
+        return Diagnostic::new("E-RUN-FILE", message).help("run the behaviour again").fail();
     }
     texts.iter().enumerate().map(|(index, text)| member(plan, index, text)).collect()
 }
@@ -102,7 +102,7 @@ fn maker(scripts: &Path, path: &str) -> String {
 }
 
 fn wrong(plan: &Plan, index: usize, message: String, label: &str, help: &str) -> Box<Diagnostic> {
-    let error = Diagnostic::new(Kind::Input, "E-POLICY", message).help(help);
+    let error = Diagnostic::new("E-POLICY", message).help(help);
     Box::new(match plan.behaviour.place_of(&format!("policy:{index}")) {
         Some(span) => error.at(plan.behaviour.source(), span, label),
         None => error,

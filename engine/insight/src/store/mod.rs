@@ -10,7 +10,7 @@ pub use members::{load_members, members_from_texts, policy_files};
 pub use policy_file::{StoredPolicy, policy_from_toml, policy_to_toml};
 pub use run_file::{Decider, StoredRun, run_to_toml};
 
-use engine::diagnostic::{Diagnostic, Kind, Result, SourceText};
+use engine::diagnostic::{Diagnostic, Result, SourceText};
 use std::path::Path;
 
 /// The largest stored file that is read, bytes.
@@ -22,13 +22,12 @@ const MAX_BYTES: u64 = 256 << 20;
 /// If it is missing, too large or not text: exit status 7, since a run that lacks it does not fit.
 pub fn read_stored(path: &Path) -> Result<SourceText> {
     let unfit = |message: String| {
-        Diagnostic::new(Kind::State, "E-RUN-FILE", message)
-            .help("give the folder of a finished run, such as runs/wall/1")
+        Diagnostic::new("E-RUN-FILE", message).help("give the folder of a finished run, such as runs/wall/1")
     };
     let length =
         std::fs::metadata(path).map_err(|error| Box::new(unfit(Diagnostic::disk("read", path, &error).message)))?.len();
     if length > MAX_BYTES {
-        return unfit(format!("'{}' has {length} bytes, more than the limit of {MAX_BYTES}", path.display())).into();
+        return unfit(format!("'{}' has {length} bytes, more than the limit of {MAX_BYTES}", path.display())).fail();
     }
     let text = std::fs::read_to_string(path)
         .map_err(|error| Box::new(unfit(Diagnostic::disk("read", path, &error).message)))?;
@@ -39,5 +38,5 @@ pub fn read_stored(path: &Path) -> Result<SourceText> {
 fn toml_error(source: &SourceText, error: &toml::de::Error) -> Box<Diagnostic> {
     let span = error.span().unwrap_or(0..0);
     let message = format!("'{}' is not a stored run of this engine", source.path.display());
-    Box::new(Diagnostic::new(Kind::State, "E-RUN-FILE", message).at(source, span, error.message().to_owned()))
+    Box::new(Diagnostic::new("E-RUN-FILE", message).at(source, span, error.message().to_owned()))
 }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::run_file::FilterEntry;
 use super::toml_error;
-use engine::diagnostic::{Diagnostic, Kind, Result, SourceText};
+use engine::diagnostic::{Diagnostic, Result, SourceText};
 use engine::filter::Catalogue;
 use engine::geometry::Twist;
 use engine::learner::{Policy, PolicyRow};
@@ -84,9 +84,8 @@ pub fn policy_to_toml(behaviour: &str, settings: &Settings, filters: &Catalogue,
         filter: settings.filters.iter().map(|filter| FilterEntry::new(filter, filters)).collect(),
         state: state.collect(),
     };
-    toml::to_string(&file).map_err(|error| {
-        Box::new(Diagnostic::new(Kind::State, "E-POLICY", format!("the policy cannot be written: {error}")))
-    })
+    toml::to_string(&file)
+        .map_err(|error| Box::new(Diagnostic::new("E-POLICY-FILE", format!("the policy cannot be written: {error}"))))
 }
 
 impl StoredPolicy {
@@ -170,7 +169,7 @@ pub fn policy_from_toml(source: &SourceText, settings: &Settings, states: usize)
 
 fn unfit(source: &SourceText, message: &str, help: &str) -> Box<Diagnostic> {
     let message = format!("'{}' {message}", source.path.display());
-    Box::new(Diagnostic::new(Kind::State, "E-POLICY", message).help(help))
+    Box::new(Diagnostic::new("E-POLICY-FILE", message).help(help))
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use toml::Table;
 
 use super::members::members_from_texts;
 use super::{policy_from_toml, read_stored, toml_error};
-use engine::diagnostic::{Diagnostic, Kind, Result, SourceText, printable};
+use engine::diagnostic::{Diagnostic, Result, SourceText, printable};
 use engine::experiment::{Leg, Member, Plan};
 use engine::filter::Catalogue;
 use engine::geometry::Twist;
@@ -93,9 +93,7 @@ impl FilterEntry {
             digest(&self.sha256),
             digest(&found.sha256)
         );
-        Diagnostic::new(Kind::State, "E-RUN-FILTER", message)
-            .help("give the folder of that filter: --filter-dir DIR")
-            .into()
+        Diagnostic::new("E-RUN-FILTER", message).help("give the folder of that filter: --filter-dir DIR").fail()
     }
 
     pub(super) fn settings(&self) -> FilterSettings {
@@ -121,7 +119,7 @@ impl TextEntry {
     fn check(&self, file: &SourceText) -> Result<SourceText> {
         if sha256(&self.text) != self.sha256 {
             let message = format!("'{}' holds a changed copy of '{}'", file.path.display(), self.path);
-            return Diagnostic::new(Kind::State, "E-RUN-FILE", message).help("run the behaviour again").into();
+            return Diagnostic::new("E-RUN-FILE", message).help("run the behaviour again").fail();
         }
         Ok(SourceText::new(self.path.clone(), self.text.clone()))
     }
@@ -156,9 +154,8 @@ pub fn run_to_toml(plan: &Plan, members: &[Member], seed: u64) -> Result<String>
         policy: members.iter().map(|member| TextEntry::new(&member.source)).collect(),
         leg: legs.collect(),
     };
-    toml::to_string_pretty(&file).map_err(|error| {
-        Box::new(Diagnostic::new(Kind::State, "E-RUN-FILE", format!("the settings cannot be written: {error}")))
-    })
+    toml::to_string_pretty(&file)
+        .map_err(|error| Box::new(Diagnostic::new("E-RUN-FILE", format!("the settings cannot be written: {error}"))))
 }
 
 fn settings_table(settings: &Settings) -> Table {
@@ -218,7 +215,7 @@ impl StoredRun {
                 file.format,
                 file.leg.len()
             );
-            return Diagnostic::new(Kind::State, "E-RUN-FILE", message).into();
+            return Diagnostic::new("E-RUN-FILE", message).fail();
         }
         let layout = Arc::new(Layout::parse(file.world.check(&source)?)?);
         file.filters.iter().try_for_each(|filter| filter.check(&filters))?;
@@ -231,7 +228,7 @@ impl StoredRun {
         let leg = |leg: &LegEntry| {
             if leg.steps > MOST_LEG_STEPS {
                 let message = format!("'{}' has a leg of {} steps", source.path.display(), leg.steps);
-                return Diagnostic::new(Kind::State, "E-RUN-FILE", message).help("run the behaviour again").into();
+                return Diagnostic::new("E-RUN-FILE", message).help("run the behaviour again").fail();
             }
             let earlier = plan_of(&leg.script, &leg.settings)?;
             match plan.differs_beyond_reward(&earlier) {
@@ -255,7 +252,7 @@ impl StoredRun {
 
 fn not_one_run(source: &SourceText, what: &str) -> Diagnostic {
     let message = format!("the legs of '{}' differ in {what}: only the reward may change", source.path.display());
-    Diagnostic::new(Kind::State, "E-RUN-FILE", message).help("run the behaviour again")
+    Diagnostic::new("E-RUN-FILE", message).help("run the behaviour again")
 }
 
 fn settings(source: &SourceText, written: &Settings, file: &RunFile, table: &Table) -> Result<Settings> {
@@ -271,7 +268,7 @@ fn settings(source: &SourceText, written: &Settings, file: &RunFile, table: &Tab
             };
             apply(&mut settings, group, key, &value).map_err(|error| {
                 let message = format!("'{}': {} ({})", source.path.display(), error.message, error.found);
-                Box::new(Diagnostic::new(Kind::State, "E-RUN-FILE", message))
+                Box::new(Diagnostic::new("E-RUN-FILE", message))
             })?;
         }
     }

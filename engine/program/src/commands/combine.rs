@@ -41,7 +41,7 @@ pub(super) fn run(
     if arguments.steps.is_some() {
         let message = format!("'{}' combines policies: it takes no steps of learning", plan.behaviour.name());
         let help = "leave out --steps; --set run.test_steps=N sets the length of the test";
-        return Err(Box::new(Diagnostic::new(Kind::Usage, "E-POLICY", message).help(help)).into());
+        return Err(Box::new(Diagnostic::new("E-COMBINES", message).help(help)).into());
     }
     RunFolder::create(path, plan, members, arguments.seed)?;
     let stop = on_ctrl_c()?;

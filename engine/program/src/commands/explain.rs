@@ -33,13 +33,13 @@ pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::r
     let is_code = topic.starts_with("E-") || topic.starts_with("W-");
     if is_code && !Path::new(&arguments.topic).exists() {
         if arguments.step.is_some() || arguments.test || arguments.out.is_some() {
-            let error = Diagnostic::new(Kind::Usage, "E-CODE", "the page of a code has no steps and no pictures");
+            let error = Diagnostic::new("E-CODE", "the page of a code has no steps and no pictures");
             return Err(Box::new(error.help(format!("write: engine explain {}", printable(&topic)))).into());
         }
         return code(&topic, console);
     }
     let Some(step) = arguments.step else {
-        let error = Diagnostic::new(Kind::Usage, "E-LOG-STEP", "which step is to be explained?");
+        let error = Diagnostic::new("E-LOG-STEP", "which step is to be explained?");
         return Err(Box::new(error.help("add --step N; engine replay RUN shows when each rule fired")).into());
     };
     let recorded = RecordedRun::load(Path::new(&arguments.topic), catalogue(&arguments.filters)?)?;
@@ -57,12 +57,12 @@ pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::r
     let before = draw(plan, &playback, &format!("step {step} of {name}: what the robot saw when it chose"))?;
     let Some(reasons) = StepReasons::of_next(&mut playback)? else {
         let message = format!("the log has {} steps of {name}, no step {step}", ledger.len());
-        let error = Diagnostic::new(Kind::Usage, "E-LOG-STEP", message).help("steps are counted from 0");
+        let error = Diagnostic::new("E-LOG-STEP", message).help("steps are counted from 0");
         return Err(Box::new(error).into());
     };
     if let Some(field) = playback.difference() {
         let message = format!("the run does not come out as it was recorded: step {step} of {name}: {field}");
-        let error = Diagnostic::new(Kind::State, "E-LOG-DIFFERS", message);
+        let error = Diagnostic::new("E-LOG-DIFFERS", message);
         return Err(Box::new(error.help("find where it begins to differ: engine replay RUN --verify")).into());
     }
     before.write(out, &stems[0])?;
@@ -77,7 +77,7 @@ pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::r
 
 fn code(code: &str, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
     let Some(page) = code_page(code) else {
-        let error = Diagnostic::new(Kind::Usage, "E-CODE", format!("there is no code '{}'", printable(code)));
+        let error = Diagnostic::new("E-CODE", format!("there is no code '{}'", printable(code)));
         return Err(Box::new(match nearest_name(code, all_codes()) {
             Some(near) => error.help(format!("did you mean '{near}'?")),
             None => error.help("give the code as it stands in the brackets of the message: error[E-SCRIPT-FACT]"),

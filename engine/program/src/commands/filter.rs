@@ -43,7 +43,7 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
         open_to_look(&arguments.behaviour, &overrides, &arguments.filters, false)?;
     if !plan.settings.policies.is_empty() {
         let message = format!("'{}' combines policies, and each sees with filters of its own", plan.behaviour.name());
-        let error = Diagnostic::new(Kind::Usage, "E-POLICY", message).help("give the script of one of its policies");
+        let error = Diagnostic::new("E-COMBINES", message).help("give the script of one of its policies");
         return Err(Box::new(error).into());
     }
     let met = arguments.run.as_deref().map(|run| met(run, &plan)).transpose()?;
@@ -95,7 +95,7 @@ fn met(run: &Path, plan: &Plan) -> Result<Policy> {
     let stored = StoredRun::load_with(run, Arc::clone(&plan.filters))?;
     let (own, wanted) = (&stored.plan.settings, &plan.settings);
     let shown = printable(&run.display().to_string());
-    let unfit = |message: String, help: &str| Diagnostic::new(Kind::State, "E-POLICY", message).help(help).into();
+    let unfit = |message: String, help: &str| Diagnostic::new("E-POLICY-FILE", message).help(help).fail();
     let Decider::Learned(policy) = stored.decider else {
         return unfit(format!("'{shown}' combined policies and met no states itself"), "give the run of one of them");
     };
@@ -139,7 +139,7 @@ fn keep_photographs(files: &[PathBuf], out: &Path) -> Result<()> {
         return Ok(());
     }
     let message = format!("the pictures could overwrite photographs in '{}'", printable(&out.display().to_string()));
-    Diagnostic::new(Kind::Usage, "E-OUT", message).help("choose another folder: --out DIR").into()
+    Diagnostic::new("E-OUT", message).help("choose another folder: --out DIR").fail()
 }
 
 /// The photograph's name without its ending, with a number behind it where another one has it.
@@ -195,5 +195,5 @@ fn print(console: &mut Console, seen: &Seen) -> std::result::Result<(), ConsoleE
 
 fn failed(file: &Path, reason: &str) -> Box<Diagnostic> {
     let message = format!("a filter failed on '{}': {}", printable(&file.display().to_string()), printable(reason));
-    Box::new(Diagnostic::new(Kind::Input, "E-FILTER", message))
+    Box::new(Diagnostic::new("E-FILTER", message))
 }

@@ -128,9 +128,8 @@ pub(super) fn create(path: &Path) -> Result<()> {
 }
 
 pub(super) fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<()> {
-    let mut text = serde_json::to_string_pretty(value).map_err(|error| {
-        Box::new(Diagnostic::new(Kind::Disk, "E-IO", format!("cannot write '{}': {error}", path.display())))
-    })?;
+    let mut text = serde_json::to_string_pretty(value)
+        .map_err(|error| Box::new(Diagnostic::new("E-IO", format!("cannot write '{}': {error}", path.display()))))?;
     text.push('\n');
     write_atomic(path, text.as_bytes())
 }

@@ -49,7 +49,7 @@ fn fill(text: &str, name: &str) -> String {
 }
 
 fn check(name: &str, folder: &Path) -> Result<()> {
-    let wrong = |message: String, help: &str| Diagnostic::new(Kind::Usage, "E-NEW", message).help(help).into();
+    let wrong = |message: String, help: &str| Diagnostic::new("E-NEW", message).help(help).fail();
     let legal = |c: u8| c.is_ascii_lowercase() || c.is_ascii_digit() || c == b'_';
     let shown = printable(name);
     if !name.starts_with(|c: char| c.is_ascii_lowercase()) || !name.bytes().all(legal) || name.len() > 64 {

@@ -71,7 +71,7 @@ fn row(listed: &Listed) -> [String; 6] {
 fn find(filters: &Catalogue, name: &str) -> Result<Arc<Entry>> {
     filters.find(name).map_err(|error| match error.code {
         // A name on the command line is the command line's mistake.
-        "E-FILTER-SETTING" => Box::new(Diagnostic { kind: Kind::Usage, code: "E-PLUGIN", ..*error }),
+        "E-FILTER-SETTING" => Box::new(Diagnostic { code: "E-PLUGIN", ..*error }),
         _ => error,
     })
 }

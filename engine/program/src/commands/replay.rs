@@ -117,7 +117,7 @@ fn listed(arguments: &ReplayArguments, ledger: &Ledger, name: &str) -> Result<st
         return Ok(from..to + 1);
     }
     let message = format!("there are no steps {from} to {to}: the log has {} steps of {name}", ledger.len());
-    Diagnostic::new(Kind::Usage, "E-LOG-STEP", message).help("steps are counted from 0").into()
+    Diagnostic::new("E-LOG-STEP", message).help("steps are counted from 0").fail()
 }
 
 /// Plays every recorded action and compares every step.
@@ -125,14 +125,14 @@ fn play(plan: &Plan, seed: u64, phase: Phase, ledger: &Ledger, name: &str) -> Re
     let mut playback = Playback::new(plan, seed, phase, ledger)?;
     while let Some(step) = playback.advance()? {
         if let Some(field) = playback.difference() {
-            return differs(&format!("step {} of {name}: {field}", step.index)).into();
+            return differs(&format!("step {} of {name}: {field}", step.index)).fail();
         }
     }
     Ok(())
 }
 
 fn differs(what: &str) -> Diagnostic {
-    Diagnostic::new(Kind::State, "E-LOG-DIFFERS", format!("the run does not come out as it was recorded: {what}"))
+    Diagnostic::new("E-LOG-DIFFERS", format!("the run does not come out as it was recorded: {what}"))
         .help("this engine, or a filter, is not the one that recorded the run: compare 'engine' in run.toml")
 }
 
@@ -303,7 +303,7 @@ fn verify(recorded: &RecordedRun, console: &mut Console) -> std::result::Result<
 fn compare(log: &RunLog, again: &RunLog) -> Result<()> {
     for (name, old, new) in [("learning", &log.learning, &again.learning), ("the test", &log.test, &again.test)] {
         if let Some((step, field)) = old.first_difference(new) {
-            return differs(&format!("step {step} of {name}: {field}")).into();
+            return differs(&format!("step {step} of {name}: {field}")).fail();
         }
     }
     Ok(())

@@ -90,5 +90,5 @@ fn known(id: &str) -> Result<(), ConsoleError> {
         None => format!("there are: {}", ids().collect::<Vec<_>>().join(", ")),
     };
     let message = format!("there is no row '{}'", printable(id));
-    Err(Box::new(Diagnostic::new(Kind::Usage, "E-ROW", message).help(help)).into())
+    Err(Box::new(Diagnostic::new("E-ROW", message).help(help)).into())
 }

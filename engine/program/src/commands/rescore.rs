@@ -74,12 +74,12 @@ pub(crate) fn run(arguments: &RescoreArguments, console: &mut Console) -> std::r
     if log.learning.is_empty() {
         let message =
             format!("'{}' combines policies: it learned nothing that could be rescored", plan.behaviour.name());
-        let error = Diagnostic::new(Kind::State, "E-RESCORE", message).help("give a run that learned");
+        let error = Diagnostic::new("E-RESCORE", message).help("give a run that learned");
         return Err(Box::new(error).into());
     }
     if !plan.earlier.is_empty() {
         let message = "the reward of this run was swapped while it learned: there is no one reward to compare with";
-        let error = Diagnostic::new(Kind::State, "E-RESCORE", message);
+        let error = Diagnostic::new("E-RESCORE", message);
         return Err(Box::new(error.help("run the behaviour again, and rescore that run")).into());
     }
     let new = plan_with_rules_of(&plan, Arc::new(Behaviour::load(&arguments.script)?))?;

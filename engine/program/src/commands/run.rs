@@ -72,8 +72,8 @@ pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::resul
 
 fn check_record(path: &Path, seeds: &[u64]) -> Result<()> {
     if seeds.len() > 1 {
-        let error = Diagnostic::new(Kind::Usage, "E-RECORD", "a recording is of one seed");
-        return error.help("leave --seeds out, and choose the seed with --seed").into();
+        let error = Diagnostic::new("E-RECORD-SEEDS", "a recording is of one seed");
+        return error.help("leave --seeds out, and choose the seed with --seed").fail();
     }
     record::check(path)
 }

@@ -19,6 +19,6 @@ pub(crate) fn on_ctrl_c() -> Result<Arc<AtomicBool>> {
     });
     match set {
         Ok(()) => Ok(stop),
-        Err(error) => Diagnostic::new(Kind::Limit, "E-SIGNAL", format!("cannot listen for Ctrl-C: {error}")).into(),
+        Err(error) => Diagnostic::new("E-SIGNAL", format!("cannot listen for Ctrl-C: {error}")).fail(),
     }
 }

@@ -74,7 +74,7 @@ fn of_pack(
         None => {
             let message = format!("{} carries no learned policy", pack.title());
             let help = "learn it with 'engine run', or build it first: engine pack build FOLDER";
-            return Diagnostic::new(Kind::Input, "E-PACK-POLICY", message).help(help).into();
+            return Diagnostic::new("E-PACK-POLICY", message).help(help).fail();
         }
     };
     Ok(StoredRun { plan, seed, decider })

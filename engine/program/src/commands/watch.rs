@@ -7,7 +7,7 @@ use crate::console::{Console, ConsoleError};
 pub(crate) fn run(arguments: &WatchArguments, _: &mut Console) -> Result<u8, ConsoleError> {
     use engine::diagnostic::{Diagnostic, Kind};
     let message = "this program was built without the live page";
-    let error = Diagnostic::new(Kind::Usage, "E-WATCH-FEATURE", message);
+    let error = Diagnostic::new("E-WATCH-FEATURE", message);
     let feature = if arguments.tui { "tui" } else { "serve" };
     Err(Box::new(error.help(format!("build it in: cargo build --release --features {feature}"))).into())
 }
@@ -135,7 +135,7 @@ fn in_terminal(
 #[cfg(all(feature = "serve", not(feature = "tui")))]
 fn without_terminal() -> ConsoleError {
     use engine::diagnostic::{Diagnostic, Kind};
-    let error = Diagnostic::new(Kind::Usage, "E-WATCH-TUI", "this program was built without the terminal's live view");
+    let error = Diagnostic::new("E-WATCH-TUI", "this program was built without the terminal's live view");
     ConsoleError::Failed(Box::new(error.help("build it in: cargo build --release --features tui")))
 }
 

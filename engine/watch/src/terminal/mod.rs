@@ -60,7 +60,7 @@ pub fn require() -> Result<()> {
     let no_terminal = |name: &str| {
         let message = format!("--tui draws on a terminal, and {name} is none");
         let help = "start it in a terminal without pipes, or leave --tui out: the page is served either way";
-        Box::new(Diagnostic::new(Kind::Usage, "E-WATCH-TERMINAL", message).help(help))
+        Box::new(Diagnostic::new("E-WATCH-TERMINAL", message).help(help))
     };
     if !std::io::stdin().is_terminal() {
         return Err(no_terminal("standard input"));
@@ -188,7 +188,5 @@ fn end_on_signals(_: &Arc<AtomicBool>) {}
 
 fn failed(error: &std::io::Error) -> Box<Diagnostic> {
     let message = format!("cannot draw on the terminal: {error}");
-    Box::new(
-        Diagnostic::new(Kind::Disk, "E-WATCH-SCREEN", message).help("leave --tui out, and open the page in a browser"),
-    )
+    Box::new(Diagnostic::new("E-WATCH-SCREEN", message).help("leave --tui out, and open the page in a browser"))
 }

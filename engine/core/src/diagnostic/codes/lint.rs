@@ -1,59 +1,71 @@
 //! Pages of what `engine check` finds.
 
+use super::Kind;
+
 /// Each code with its page, in the order of the alphabet.
-pub(super) const PAGES: &[(&str, &str)] = &[
+pub(super) const PAGES: &[(&str, Kind, &str)] = &[
     (
         "W-EXPLOIT",
+        Kind::Input,
         "A behaviour that gets nowhere earns more than driving on: spinning in place, standing, U-turns. The learner will find it.\n\
       Each line of the table was driven in the simulator. Reward progress, or punish what the robot does instead of it.",
     ),
     (
         "W-LOOP",
+        Kind::Input,
         "A function goes over the beams of the laser one by one, in every step.\n\
       The interpreter needs some 20 microseconds for that, as much as all the rest of a step; the engine's own call needs less than one.\n\
       Use facts.laser.sector(from, to) with .nearest, .farthest, .mean, .count_below(limit) or .excess(expected).",
     ),
     (
         "W-NO-CHOICE",
+        Kind::Input,
         "The reward is the same whatever the robot does, so there is nothing to learn.\n\
       It reads nothing that actions lead to, or every step of the trial was rewarded alike, or all actions are the same.\n\
       Let a rule read the laser, the camera, the robot or the action.",
     ),
     (
         "W-PERSISTENCE",
+        Kind::Input,
         "A rule waits for so long that it never comes to fire, or that a robot which spins in place escapes it.\n\
       Each turn interrupts the condition, and the time begins again: whoever spins is never punished.\n\
       Make the time after 'for' shorter than the message says.",
     ),
     (
         "W-RULE-ALWAYS",
+        Kind::Input,
         "A rule fired in every step in which it was asked: it adds the same number each time, or never lets the robot drive.\n\
       A learner compares actions; what all of them earn teaches nothing. Tighten the condition, or let the value depend on a fact.",
     ),
     (
         "W-RULE-NEVER",
+        Kind::Input,
         "A rule never fired in some thousand steps, driven at random, while learning and while trying to cheat.\n\
       The label says what its facts were. Goals, time limits and accidents (contact, a fall) may be rare and are not reported.\n\
       Check the threshold, and that the world has what the rule is about.",
     ),
     (
         "W-RULE-SHADOWED",
+        Kind::Input,
         "Whenever this rule could fire, an earlier rule recovers first, and the later one is not asked.\n\
       Rules are asked from the top. Put the narrower condition first, or make the two exclude each other.",
     ),
     (
         "W-SCALE",
+        Kind::Input,
         "A reward does not suit the softmax that chooses actions; its temperature begins at 0.07 and ends at 0.009.\n\
       After one very large punishment an action is never tried again; a very small one cannot be told from nothing.\n\
       Keep rewards between -1 and 1, or change learner.temperature and learner.temperature_end with them.",
     ),
     (
         "W-UNIT",
+        Kind::Input,
         "A fact is compared with a number that it never comes near: most often centimetres for metres or degrees for radians.\n\
       Ranges are in metres, speeds in m/s, turns in rad/s, shares from 0 to 1. The label says what this robot can give.",
     ),
     (
         "W-UNUSED",
+        Kind::Input,
         "Something is set, defined or written and has no effect with this script and this world.\n\
       Often a name is misspelt elsewhere, or a setting belongs to another way of learning. Use it or take it out.",
     ),

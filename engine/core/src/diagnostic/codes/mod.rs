@@ -8,19 +8,26 @@ mod scripts;
 mod watch;
 mod worlds;
 
-/// The pages, topic by topic.
-const TOPICS: &[&[(&str, &str)]] =
+use super::Kind;
+
+/// The pages, topic by topic: code, kind, page.
+const TOPICS: &[&[(&str, Kind, &str)]] =
     &[scripts::PAGES, worlds::PAGES, filters::PAGES, runs::PAGES, lint::PAGES, packs::PAGES, watch::PAGES];
 
 /// The page of a code.
 #[must_use]
 pub fn code_page(code: &str) -> Option<&'static str> {
-    TOPICS.iter().copied().flatten().find(|(known, _)| *known == code).map(|(_, page)| *page)
+    TOPICS.iter().copied().flatten().find(|(known, ..)| *known == code).map(|(.., page)| *page)
 }
 
 /// Every code that has a page.
 pub fn all_codes() -> impl Iterator<Item = &'static str> {
-    TOPICS.iter().copied().flatten().map(|(code, _)| *code)
+    TOPICS.iter().copied().flatten().map(|(code, ..)| *code)
+}
+
+/// The kind of failure that a code stands for, and so its exit status; a test sees to it that every code has a page.
+pub(super) fn kind_of(code: &str) -> Kind {
+    TOPICS.iter().copied().flatten().find(|(known, ..)| *known == code).map_or(Kind::Fault, |(_, kind, _)| *kind)
 }
 
 #[cfg(test)]
@@ -39,7 +46,7 @@ mod tests {
 
     #[test]
     fn a_page_has_sentences_and_short_lines_of_thought() {
-        for (code, page) in TOPICS.iter().copied().flatten() {
+        for (code, _, page) in TOPICS.iter().copied().flatten() {
             assert!(page.ends_with(['.', ';']), "{code}");
             assert!(page.len() > 60 && page.lines().count() <= 4, "{code}");
         }

@@ -1,20 +1,32 @@
 //! Pages of what can be wrong with runs, their files, and the machine.
 
+use super::Kind;
+
 /// Each code with its page, in the order of the alphabet.
-pub(super) const PAGES: &[(&str, &str)] = &[
+pub(super) const PAGES: &[(&str, Kind, &str)] = &[
     (
         "E-CODE",
+        Kind::Usage,
         "The word that was to be explained looks like a code, but no message of this engine has it.\n\
          Codes stand in brackets at the beginning of a message: error[E-SCRIPT-FACT]. Copy it from there.",
     ),
     (
+        "E-COMBINES",
+        Kind::Usage,
+        "The command was given a script that combines learned policies, and what it was asked to do needs a \
+         behaviour that learns or sees by itself.\n\
+         Give the script of one of the policies, or leave out the option that is about learning.",
+    ),
+    (
         "E-IO",
+        Kind::Disk,
         "A file or folder could not be read or written; the message has the system's reason.\n\
          Look at the path, its permissions and the room on the disk. Old files are unchanged: a new one \
          replaces them only when it is whole.",
     ),
     (
         "E-LOG-DIFFERS",
+        Kind::State,
         "A recorded run was done again, and a step came out otherwise than it was recorded.\n\
          The same seed gives the same bytes with the same engine, filters and files, so one of them has \
          changed: run.toml names the engine that recorded it.\n\
@@ -22,6 +34,7 @@ pub(super) const PAGES: &[(&str, &str)] = &[
     ),
     (
         "E-LOG-FILE",
+        Kind::State,
         "The log of a run, log.bin, is missing, cut or damaged, or of another format.\n\
          Each chunk of steps has a checksum, so nothing of a damaged log is believed. Copy the folder again, \
          or run the behaviour again.\n\
@@ -29,54 +42,80 @@ pub(super) const PAGES: &[(&str, &str)] = &[
     ),
     (
         "E-LOG-RUN",
+        Kind::State,
         "The log beside this run.toml or summary.json was written for another run.\n\
          A log is useless without the settings and the seed that it was recorded with. Keep the files of one \
          run together.",
     ),
     (
         "E-LOG-STEP",
+        Kind::Usage,
         "A step was asked for that the log does not have, or none was named.\n\
          Steps are counted from 0, learning and test each on its own. engine replay RUN says how many there \
          are and when each rule fired.",
     ),
     (
         "E-OUT",
+        Kind::Usage,
         "The folder for the pictures is the one that the photographs come from, and pictures could replace \
          them.\n\
          Name another folder with --out.",
     ),
     (
         "E-PICTURE",
+        Kind::Disk,
         "A picture could not be drawn or encoded.\n\
          The results in numbers are not touched by this. The message says which part failed.",
     ),
     (
         "E-POLICY",
+        Kind::Input,
         "A learned policy cannot be used: its file is missing or damaged, or it was learned with another \
          grid, other filters or other actions.\n\
          Policies are combined by their states and actions, so these must be the same. Learn the policy again \
          with what this script has.",
     ),
     (
+        "E-POLICY-FILE",
+        Kind::State,
+        "A stored policy is damaged, of another format, or was learned with another grid, other filters or other \
+         actions than this run has.\n\
+         Run the behaviour again, or give the run that learned with what this script has.",
+    ),
+    (
         "E-RECORD",
-        "The recording could not be made: it is of one seed, and its file must be in a folder that can be written.\n\
-         The run itself is not lost: its folder is written before the recording. Choose one seed with --seed.",
+        Kind::Disk,
+        "The recording could not be written, or an image of it could not be encoded.\n\
+         The run itself is not lost: its folder is written before the recording. Look at the room on the disk.",
     ),
     (
         "E-RECORD-BUILD",
+        Kind::Usage,
         "This engine was built without recording for Foxglove and Rerun, which few need and which takes time to build.\n\
          Build it with: cargo build --release --features mcap.",
     ),
     (
+        "E-RECORD-SEEDS",
+        Kind::Usage,
+        "A recording for Foxglove and Rerun is of one seed, and the command asks for several.\n\
+         Leave out --seeds and choose the seed with --seed; each further recording is a run of its own.",
+    ),
+    (
         "E-RESCORE",
+        Kind::State,
         "A recorded run cannot be judged by this script, because the script sees or does something else: \
          another world, camera, laser, filter, grid, action or rhythm.\n\
          The record holds what happened under the old ones. Change rules and learner only, or learn anew with \
          engine run.",
     ),
-    ("E-ROW", "The table of the paper's claims has no row of this name. engine reproduce --quick lists them all."),
+    (
+        "E-ROW",
+        Kind::Usage,
+        "The table of the paper's claims has no row of this name. engine reproduce --quick lists them all.",
+    ),
     (
         "E-RUN-FILE",
+        Kind::State,
         "The folder is not that of a finished run of this engine: run.toml, policy.toml or summary.json is \
          missing, changed or of another format.\n\
          Give the folder that engine run has written, such as runs/wall/1. A changed copy of script or world \
@@ -84,8 +123,13 @@ pub(super) const PAGES: &[(&str, &str)] = &[
     ),
     (
         "E-SIGNAL",
+        Kind::Fault,
         "The system does not let the engine listen for Ctrl-C. Nothing is learned, so that a stop cannot lose \
          it.",
     ),
-    ("E-THREADS", "The system does not give the engine the threads that it asked for. Use fewer with --threads."),
+    (
+        "E-THREADS",
+        Kind::Fault,
+        "The system does not give the engine the threads that it asked for. Use fewer with --threads.",
+    ),
 ];

@@ -1,90 +1,107 @@
 //! Pages of what can be wrong in a script or a setting.
 
+use super::Kind;
+
 /// Each code with its page, in the order of the alphabet.
-pub(super) const PAGES: &[(&str, &str)] = &[
+pub(super) const PAGES: &[(&str, Kind, &str)] = &[
     (
         "E-GRID",
+        Kind::Input,
         "The grid would have more states than a table can hold, or cells without a single pixel.\n\
          Each cell doubles the number of states: 3x3 cells make 64 with the column rule, 512 without. Use \
          fewer rows or columns.",
     ),
     (
         "E-MIRROR",
+        Kind::Input,
         "The script asks to learn left for right, but one of its actions has no counterpart that turns the \
          other way.\n\
          Add the action with the opposite turning speed, or leave 'mirror' out.",
     ),
     (
         "E-REWARD-FACTS",
+        Kind::State,
         "A script was asked to judge facts that do not suit it: before its calibration, or of another laser.\n\
          This is a mistake in a program that uses the engine as a library, not in the script.",
     ),
     (
         "E-REWARD-VALUE",
+        Kind::Input,
         "A rule or fn reward gave something that is no finite number: the learned values would be spoilt for \
          ever.\n\
          Look for a division by zero, a root or logarithm of a negative number, or a map without 'value'.",
     ),
     (
         "E-SCRIPT-EMPTY",
+        Kind::Input,
         "The script has neither a rule nor fn reward: every step would be worth nothing.\n\
          Write a rule, for example: rule \"too close\" when laser.nearest < 0.25 => -1 then recover;",
     ),
     (
         "E-SCRIPT-FACT",
+        Kind::Input,
         "The script reads a fact, a beam or a grid cell that does not exist.\n\
          Facts are named in scripts/README.md; beams are counted from 0 on the right, cells from 0 at the top \
          left.",
     ),
-    ("E-SCRIPT-FILE", "The script cannot be read from this path. Check the name; scripts end in .rhai."),
+    ("E-SCRIPT-FILE", Kind::Input, "The script cannot be read from this path. Check the name; scripts end in .rhai."),
     (
         "E-SCRIPT-LIMIT",
+        Kind::Limit,
         "The script used more than it may: operations, memory, depth or text.\n\
          A judgement takes a handful of operations; look for a loop that does not end or that grows \
          something.",
     ),
     (
         "E-SCRIPT-NAME",
+        Kind::Input,
         "The script uses a name or a function that is not there, or with the wrong kind of value.\n\
          The message has the nearest name that is; all of them are in scripts/README.md.",
     ),
     (
         "E-SCRIPT-REWARD",
+        Kind::Input,
         "fn reward or fn calibrate is not as it must be: each takes one argument, the facts; calibrate \
          returns what the rules need.\n\
          Write fn reward(facts) { ... } and return a number, or #{ value: -1, recover: true }.",
     ),
     (
         "E-SCRIPT-RULE",
+        Kind::Input,
         "A rule is not complete, can never fire, or says something that cannot be.\n\
          The form is: rule \"name\" when CONDITION for 5 seconds => VALUE then recover; where the time and \
          the recovery may be left out.",
     ),
     (
         "E-SCRIPT-RUN",
+        Kind::Input,
         "The script failed while it judged a step: an array without that number, a map without that key, a \
          division.\n\
          What it reads depends on what is measured, so this came up only now. The message names the step.",
     ),
     (
         "E-SCRIPT-SETTING",
+        Kind::Input,
         "A set-up call has a key or a value that does not exist, is given twice, or stands where nothing can \
          be set up any more.\n\
          Set-up calls stand at the top of the script; their keys, units and ranges are in scripts/README.md.",
     ),
     (
         "E-SCRIPT-SOURCE",
+        Kind::Input,
         "The file is not the text of a script: it is too long, not UTF-8, or another kind of file.\n\
          A script is a short text file that ends in .rhai.",
     ),
     (
         "E-SCRIPT-SYNTAX",
+        Kind::Input,
         "The script cannot be read as a program: something is missing, or stands where it has no meaning.\n\
          The caret shows where the reader gave up; the cause is there or just before, often a bracket or a \
          ';'.",
     ),
     (
         "E-SET",
+        Kind::Usage,
         "A --set on the command line names no setting, or gives it a value that it cannot have.\n\
          Write --set GROUP.KEY=VALUE, such as --set camera.tilt_deg=40.",
     ),

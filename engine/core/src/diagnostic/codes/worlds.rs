@@ -1,9 +1,12 @@
 //! Pages of what can be wrong in a world, and of what the robot meets there.
 
+use super::Kind;
+
 /// Each code with its page, in the order of the alphabet.
-pub(super) const PAGES: &[(&str, &str)] = &[
+pub(super) const PAGES: &[(&str, Kind, &str)] = &[
     (
         "E-CAMERA-BLANK",
+        Kind::Fault,
         "The camera shows one single colour: nothing in the image differs from anything else.\n\
          A robot that sees nothing would learn nothing, and its curve would not say why.\n\
          Check camera.tilt_deg and camera.height_m, and that the world has walls, obstacles or a textured \
@@ -11,6 +14,7 @@ pub(super) const PAGES: &[(&str, &str)] = &[
     ),
     (
         "E-CAMERA-FROZEN",
+        Kind::Fault,
         "The robot moves, but its camera keeps showing the same image.\n\
          Either the robot is inside a solid, or every place of the world looks alike: no state could tell \
          them apart.\n\
@@ -18,6 +22,7 @@ pub(super) const PAGES: &[(&str, &str)] = &[
     ),
     (
         "E-RECOVERY-BLOCKED",
+        Kind::Input,
         "The robot is to be put back, but every place that it may be put to touches something or has no \
          ground.\n\
          Move the starts or the route of the world away from walls, boxes and edges; for \
@@ -25,36 +30,50 @@ pub(super) const PAGES: &[(&str, &str)] = &[
     ),
     (
         "E-RECOVERY-MOVER",
+        Kind::Input,
         "The script puts the robot back behind a mover, and the world has none.\n\
          Add a [[mover]] with its [[route]] to the world, or choose another recovery, such as \
          recovery(\"start\").",
     ),
     (
         "E-RECOVERY-ROUTE",
+        Kind::Input,
         "The script puts the robot back onto the route, and the world has no route called lap.\n\
          Add a closed [[route]] with name = \"lap\", or write recovery(\"start\").",
     ),
     (
         "E-WORLD-FILE",
+        Kind::Input,
         "The world is not there, or its file cannot be read.\n\
          A world is named without its ending and looked for in the folder worlds, or given as the path of a \
          .toml file.",
     ),
     (
         "E-WORLD-KEY",
+        Kind::Input,
         "A table of the world file has a key that does not exist there, or lacks one that it needs.\n\
          worlds/README.md lists the keys of every table.",
     ),
-    ("E-WORLD-NAME", "Something in the world file is called by a name that nothing has, or that two things have."),
+    (
+        "E-WORLD-NAME",
+        Kind::Input,
+        "Something in the world file is called by a name that nothing has, or that two things have.",
+    ),
     (
         "E-WORLD-START",
+        Kind::Input,
         "The world has no place for the robot to start, or the robot would touch something or fall there.\n\
          Add a [[start]] with position_m and yaw_deg, or move it into the open: the robot is about half a \
          metre long.",
     ),
-    ("E-WORLD-SYNTAX", "The world file is not TOML. Values stand after '=', text in quotes, lists in [ ]."),
+    (
+        "E-WORLD-SYNTAX",
+        Kind::Input,
+        "The world file is not TOML. Values stand after '=', text in quotes, lists in [ ].",
+    ),
     (
         "E-WORLD-VALUE",
+        Kind::Input,
         "A number in the world file is outside of what can be built or simulated.\n\
          Lengths are in metres and angles in degrees: a room of 600 is usually one of 6, written in \
          centimetres.",

@@ -57,7 +57,7 @@ pub(super) fn check(path: &Path, bytes: &[u8]) -> diagnostic::Result<()> {
         if let Some(fault) = fault {
             let message = format!("'{shown}' has {fault}");
             let help = "build it for size (opt-level, strip) and leave out what it does not use";
-            return Diagnostic::new(Kind::Limit, "E-WASM-SIZE", message).help(help).into();
+            return Diagnostic::new("E-WASM-SIZE", message).help(help).into();
         }
     }
     if code_bytes == 0 {
@@ -96,7 +96,7 @@ fn most_arguments(section: &TypeSectionReader<'_>) -> Result<u64, BinaryReaderEr
 /// A module that cannot be read.
 pub(super) fn damaged(shown: &str, why: &str) -> Box<Diagnostic> {
     let message = format!("'{shown}' is not a whole WebAssembly module: {}", printable(why));
-    Box::new(Diagnostic::new(Kind::Limit, "E-WASM-FORM", message).help("copy or build it again"))
+    Box::new(Diagnostic::new("E-WASM-FORM", message).help("copy or build it again"))
 }
 
 fn items(what: &str, found: u32) -> Option<String> {

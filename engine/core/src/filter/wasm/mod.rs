@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::catalogue::Entry;
-use crate::diagnostic::{Diagnostic, Kind, Result, printable};
+use crate::diagnostic::{Diagnostic, Result, printable};
 
 #[cfg(feature = "wasm")]
 mod layout;
@@ -34,7 +34,7 @@ pub(super) fn open(path: &Path) -> Result<Entry> {
     let shown = printable(&path.display().to_string());
     let message = format!("'{shown}' is a WebAssembly filter, and this engine was built without WebAssembly");
     let help = "build it with: cargo build --release --features wasm";
-    Diagnostic::new(Kind::Usage, "E-WASM-BUILD", message).help(help).into()
+    Diagnostic::new("E-WASM-BUILD", message).help(help).fail()
 }
 
 fn check_form(path: &Path, bytes: &[u8]) -> Result<()> {
@@ -42,9 +42,9 @@ fn check_form(path: &Path, bytes: &[u8]) -> Result<()> {
         return Ok(());
     }
     let message = format!("'{}' is not a WebAssembly module", printable(&path.display().to_string()));
-    let error = Diagnostic::new(Kind::Limit, "E-WASM-FORM", message);
+    let error = Diagnostic::new("E-WASM-FORM", message);
     if bytes.trim_ascii_start().starts_with(b"(module") {
-        return error.help("it is the text form of one; turn it into a module with wat2wasm").into();
+        return error.help("it is the text form of one; turn it into a module with wat2wasm").fail();
     }
-    error.help("build one: cargo build --release --target wasm32-unknown-unknown").into()
+    error.help("build one: cargo build --release --target wasm32-unknown-unknown").fail()
 }

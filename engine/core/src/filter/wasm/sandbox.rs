@@ -37,7 +37,7 @@ const LOG_BYTES: usize = 4096;
 pub(super) fn open(path: &Path, bytes: &[u8]) -> Result<Entry> {
     let shown = printable(&path.display().to_string());
     let engine = engine().map_err(|error| {
-        Box::new(Diagnostic::new(Kind::Limit, "E-WASM-ENGINE", format!("WebAssembly does not work here: {error}")))
+        Box::new(Diagnostic::new("E-WASM-ENGINE", format!("WebAssembly does not work here: {error}")))
     })?;
     let module = Module::from_binary(&engine, bytes).map_err(|error| damaged(&shown, &error.to_string()))?;
     check_imports(&shown, &module)?;
@@ -73,7 +73,7 @@ fn check_imports(shown: &str, module: &Module) -> Result<()> {
         let message = format!("'{shown}' wants '{name}' from '{from}'");
         let help = "filters may import only env.log(address: i32, length: i32); build without WASI, for \
                     wasm32-unknown-unknown or with clang --target=wasm32";
-        return Diagnostic::new(Kind::Limit, "E-WASM-IMPORT", message).help(help).into();
+        return Diagnostic::new("E-WASM-IMPORT", message).help(help).into();
     }
     Ok(())
 }
@@ -117,7 +117,7 @@ impl Sandbox {
     fn lacks(&self, name: &str, wanted: &str) -> Box<Diagnostic> {
         let message = format!("'{}' has no export '{name}' that is {wanted}", self.shown);
         let help = "end the filter with filter_api::export!(PLUGIN), or FILTER_EXPORT in C";
-        Box::new(Diagnostic::new(Kind::Limit, "E-WASM-ABI", message).help(help))
+        Box::new(Diagnostic::new("E-WASM-ABI", message).help(help))
     }
 
     fn describe(&self) -> Result<Described> {
@@ -140,7 +140,7 @@ impl Sandbox {
                 Fault::Parameters(count) => ("E-WASM-ABI", format!("has {count} parameters; a filter may have 64")),
             };
             let help = "build it again with the filter-api (or filter.h) that belongs to this engine";
-            Box::new(Diagnostic::new(Kind::Limit, code, format!("'{}' {what}", self.shown)).help(help))
+            Box::new(Diagnostic::new(code, format!("'{}' {what}", self.shown)).help(help))
         })
     }
 
@@ -284,7 +284,7 @@ impl Guest {
     }
 
     fn outside(&self, what: &str) -> Box<Diagnostic> {
-        Box::new(Diagnostic::new(Kind::Limit, "E-WASM-OUTPUT", format!("'{}' {what}", self.shown)))
+        Box::new(Diagnostic::new("E-WASM-OUTPUT", format!("'{}' {what}", self.shown)))
     }
 }
 
@@ -315,5 +315,5 @@ fn trapped(shown: &str, doing: &str, error: &wasmtime::Error, log: &str) -> Box<
     };
     let said = log.lines().last().map_or(String::new(), |line| format!("; its last words: {}", printable(line)));
     let message = format!("'{shown}' was stopped while {doing}: {}{said}", printable(&why));
-    Box::new(Diagnostic::new(Kind::Limit, code, message))
+    Box::new(Diagnostic::new(code, message))
 }

@@ -166,7 +166,7 @@ fn what_does_not_end_is_stopped_by_a_counted_limit() {
     for script in scripts {
         let wrong = wrong(script);
         assert_eq!(
-            (wrong.code, wrong.kind),
+            (wrong.code, wrong.kind()),
             ("E-SCRIPT-LIMIT", Kind::Limit),
             "{}: {wrong:?}",
             &script[..40.min(script.len())]
@@ -221,7 +221,7 @@ fn files_that_are_no_scripts_are_named() {
     assert!(load(&write("a.rhai", b"\n\n\xff")).message.contains("line 3"));
     assert!(load(&write("b.rhai", b"\x89PNG\r\n")).message.contains("PNG"));
     assert!(load(&write("c.rhai", &vec![b' '; (1 << 20) + 1])).message.contains("too long"));
-    assert!([load(folder.path())].iter().all(|wrong| wrong.kind == Kind::Input));
+    assert!([load(folder.path())].iter().all(|wrong| wrong.kind() == Kind::Input));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::reader::{Row, read};
 use super::schema::MOST_SOLIDS;
 use super::{Layout, starts};
-use crate::diagnostic::{Diagnostic, Kind, Mistakes, Result, SourceText, nearest_name, printable};
+use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, nearest_name, printable};
 use crate::geometry::{Point2, Point3, Pose, Vector3};
 use crate::world::mover::Mover;
 use crate::world::route::{Route, rounded};
@@ -62,7 +62,7 @@ fn yaw(row: &Row) -> f64 {
 }
 
 fn error(code: &'static str, message: impl Into<String>) -> Diagnostic {
-    Diagnostic::new(Kind::Input, code, message)
+    Diagnostic::new(code, message)
 }
 
 /// Where a solid was written.
@@ -216,7 +216,7 @@ impl<'a> Builder<'a> {
         error("E-WORLD-KEY", format!("{section} is neither a line nor one solid"))
             .at(self.source, row.span.clone(), "this one")
             .help(format!("a line has {}; one solid has {}", line.join(", "), solid.join(", ")))
-            .into()
+            .fail()
     }
 
     /// A box on every segment of a line, half of its width longer at both ends so that corners are square.
@@ -243,7 +243,7 @@ impl<'a> Builder<'a> {
             return error("E-WORLD-VALUE", "a closed line needs three points, the last not on the first")
                 .at(self.source, span.clone(), "the last point")
                 .help("leave the repeated point out: 'closed = true' joins the end to the beginning")
-                .into();
+                .fail();
         }
         Ok(())
     }
@@ -266,7 +266,7 @@ impl<'a> Builder<'a> {
             return error("E-WORLD-VALUE", format!("a world has at most {MOST_SOLIDS} solids"))
                 .at(self.source, row.span.clone(), "one too many")
                 .help("a line counts once for every segment")
-                .into();
+                .fail();
         }
         let material = self.material(file, row);
         self.solids.push(Solid { shape, centre, yaw_rad, material, collides: section != "[[paint]]" });
@@ -287,14 +287,14 @@ impl<'a> Builder<'a> {
     fn route(&self, row: &Row, before: &[Route]) -> Result<Route> {
         let name = row.text("name").unwrap_or_default();
         if before.iter().any(|route| route.name == name) {
-            return self.twice("route", row).into();
+            return self.twice("route", row).fail();
         }
         let closed = row.flag("closed").unwrap_or(false);
         if name == "lap" && !closed {
             return error("E-WORLD-VALUE", "the route 'lap' must be closed: laps are measured on it")
                 .at(self.source, row.span_of("closed"), "an open route")
                 .help("write 'closed = true', or give the route another name")
-                .into();
+                .fail();
         }
         let written = row.points("points_m");
         self.check_closed(written, closed)?;

@@ -11,7 +11,7 @@ use super::mover::Mover;
 use super::route::Route;
 use super::scene::Scene;
 use super::terrain::Terrain;
-use crate::diagnostic::{Diagnostic, Kind, Result, SourceText};
+use crate::diagnostic::{Diagnostic, Result, SourceText};
 use crate::geometry::Pose;
 use std::io::Read;
 use std::path::Path;
@@ -72,10 +72,7 @@ impl Layout {
     pub fn load(path: &Path) -> Result<Self> {
         let shown = path.display();
         let wrong = |reason: &str, help: &str| {
-            Box::new(
-                Diagnostic::new(Kind::Input, "E-WORLD-FILE", format!("cannot read the world '{shown}': {reason}"))
-                    .help(help),
-            )
+            Box::new(Diagnostic::new("E-WORLD-FILE", format!("cannot read the world '{shown}': {reason}")).help(help))
         };
         let unreadable = |error: &std::io::Error| {
             let (reason, help) = match error.kind() {

@@ -1,7 +1,7 @@
 //! Reads a world file against its schema: syntax, names, types and ranges, each error at the user's own place.
 
 use super::schema::{FILE, Form, Key, MOST_POINTS};
-use crate::diagnostic::{Diagnostic, Kind, Mistakes, Result, SourceText, nearest_name, printable};
+use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, nearest_name, printable};
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -86,12 +86,12 @@ impl Row {
 pub(super) fn read(source: &SourceText, mistakes: &mut Mistakes) -> Result<Row> {
     let table = match DeTable::parse(&source.text) {
         Ok(table) => table,
-        Err(error) if !is_double(&error) => return syntax(source, &error).into(),
+        Err(error) if !is_double(&error) => return syntax(source, &error).fail(),
         Err(first) => {
             let (table, errors) = DeTable::parse_recoverable(&source.text);
             // Behind any other mistake a key may be there twice only because a table's head is lost.
             if !errors.iter().all(is_double) {
-                return syntax(source, errors.iter().find(|error| !is_double(error)).unwrap_or(&first)).into();
+                return syntax(source, errors.iter().find(|error| !is_double(error)).unwrap_or(&first)).fail();
             }
             errors.iter().for_each(|error| mistakes.add(syntax(source, error)));
             table
@@ -113,7 +113,7 @@ fn syntax(source: &SourceText, error: &toml::de::Error) -> Diagnostic {
     } else {
         ("this is not TOML", "values stand after '=', text in quotes, lists in [ ]; see worlds/README.md")
     };
-    Diagnostic::new(Kind::Input, "E-WORLD-SYNTAX", message)
+    Diagnostic::new("E-WORLD-SYNTAX", message)
         .at(source, span, printable(&error.message().replace('\n', ", ")))
         .help(help)
 }
@@ -155,7 +155,7 @@ impl Reader<'_> {
                 let message = format!("{} has no '{}'", of(section), key.name);
                 let more: String = missing.map(|key| format!("; it needs '{}' too", key.name)).collect();
                 let help = format!("add '{} = ...': {}{more}", key.name, key.allowed());
-                let wrong = Diagnostic::new(Kind::Input, "E-WORLD-KEY", message);
+                let wrong = Diagnostic::new("E-WORLD-KEY", message);
                 let label = format!("needs '{}'", key.name);
                 self.mistakes.add(wrong.at(self.source, row.span.clone(), label).help(help));
             }
@@ -181,11 +181,11 @@ impl Reader<'_> {
             _ => format!("it has: {}", keys.iter().map(|key| key.name).collect::<Vec<_>>().join(", ")),
         };
         let message = format!("{} has no key '{}'", of(section), printable(written));
-        Diagnostic::new(Kind::Input, "E-WORLD-KEY", message).at(self.source, name.span(), "not known").help(help)
+        Diagnostic::new("E-WORLD-KEY", message).at(self.source, name.span(), "not known").help(help)
     }
 
     fn wrong(&self, key: &Key, value: &Value<'_>, label: impl Into<String>) -> Diagnostic {
-        Diagnostic::new(Kind::Input, "E-WORLD-VALUE", format!("'{}' must be {}", key.name, key.allowed())).at(
+        Diagnostic::new("E-WORLD-VALUE", format!("'{}' must be {}", key.name, key.allowed())).at(
             self.source,
             value.span(),
             label,
@@ -244,8 +244,8 @@ impl Reader<'_> {
                     let near = nearest_name(word, words.iter().copied());
                     let error = found();
                     return match near {
-                        Some(near) => error.help(format!("did you mean \"{near}\"?")).into(),
-                        None => error.into(),
+                        Some(near) => error.help(format!("did you mean \"{near}\"?")).fail(),
+                        None => error.fail(),
                     };
                 }
                 Field::Text(word.to_owned())
@@ -255,7 +255,7 @@ impl Reader<'_> {
                 Field::Numbers(self.array(key, value, count..=count, |n| (low..=high).contains(&n))?)
             }
             Form::Points(least) => Field::Points(self.points(key, value, least)?),
-            Form::Table(_) | Form::Tables(..) => return found().into(),
+            Form::Table(_) | Form::Tables(..) => return found().fail(),
         })
     }
 
@@ -268,7 +268,7 @@ impl Reader<'_> {
         match number {
             // Not a number lies in no range.
             Some(number) if allowed(number) => Ok(number + 0.0),
-            _ => self.wrong(key, value, format!("found {}", shown(value.get_ref()))).into(),
+            _ => self.wrong(key, value, format!("found {}", shown(value.get_ref()))).fail(),
         }
     }
 
@@ -280,20 +280,20 @@ impl Reader<'_> {
         allowed: impl Fn(f64) -> bool,
     ) -> Result<Vec<f64>> {
         let Some(array) = value.get_ref().as_array() else {
-            return self.wrong(key, value, format!("found {}", shown(value.get_ref()))).into();
+            return self.wrong(key, value, format!("found {}", shown(value.get_ref()))).fail();
         };
         if !count.contains(&array.len()) {
-            return self.wrong(key, value, format!("found {} numbers", array.len())).into();
+            return self.wrong(key, value, format!("found {} numbers", array.len())).fail();
         }
         array.iter().map(|number| self.number(key, number, &allowed)).collect()
     }
 
     fn points(&self, key: &Key, value: &Value<'_>, least: usize) -> Result<Vec<([f64; 2], Range<usize>)>> {
         let Some(array) = value.get_ref().as_array() else {
-            return self.wrong(key, value, format!("found {}", shown(value.get_ref()))).into();
+            return self.wrong(key, value, format!("found {}", shown(value.get_ref()))).fail();
         };
         if !(least..=MOST_POINTS).contains(&array.len()) {
-            return self.wrong(key, value, format!("found {} points, at most {MOST_POINTS}", array.len())).into();
+            return self.wrong(key, value, format!("found {} points, at most {MOST_POINTS}", array.len())).fail();
         }
         let mut points: Vec<([f64; 2], Range<usize>)> = Vec::with_capacity(array.len());
         for point in array {
@@ -304,7 +304,7 @@ impl Reader<'_> {
                 return self
                     .wrong(key, point, "the same point as the one before")
                     .help("delete one of the two: a segment needs a length")
-                    .into();
+                    .fail();
             }
             points.push((here, point.span()));
         }

@@ -3,7 +3,7 @@
 use super::build::Origin;
 use super::reader::Row;
 use super::{Layout, Obstruction};
-use crate::diagnostic::{Diagnostic, Kind, Mistakes, Result, printable};
+use crate::diagnostic::{Diagnostic, Mistakes, Result, printable};
 use crate::geometry::Pose;
 use crate::world::footprint::Obstacle;
 
@@ -22,7 +22,7 @@ pub(super) fn check(layout: &Layout, file: &Row, origins: &[Origin]) -> Result<(
 fn check_one(layout: &Layout, row: &Row, start: Pose, origins: &[Origin]) -> Result<()> {
     let source = &layout.source;
     let at = |message: String, label: String| {
-        Diagnostic::new(Kind::Input, "E-WORLD-START", message).at(source, row.span_of("position_m"), label)
+        Diagnostic::new("E-WORLD-START", message).at(source, row.span_of("position_m"), label)
     };
     let place = format!("the start at ({}, {})", start.x_m, start.y_m);
     match layout.obstruction(start) {
@@ -31,12 +31,12 @@ fn check_one(layout: &Layout, row: &Row, start: Pose, origins: &[Origin]) -> Res
             let line = source.position(span.start).0;
             return at(format!("{place} is inside a solid"), format!("overlaps the {section} of line {line}"))
                 .help("the robot needs 0.5 m by 0.48 m around this place, along its heading")
-                .into();
+                .fail();
         }
         Some(Obstruction::NoGround) => {
             return at(format!("{place} has no ground under all of the robot"), "it would fall".to_owned())
                 .help("move it at least 0.35 m away from every edge")
-                .into();
+                .fail();
         }
         None => {}
     }
@@ -48,7 +48,7 @@ fn check_one(layout: &Layout, row: &Row, start: Pose, origins: &[Origin]) -> Res
             let name = printable(&mover.name);
             return at(format!("{place} is inside a mover"), format!("overlaps '{name}' at time 0"))
                 .help("move the start, or change the mover's 'offset_m'")
-                .into();
+                .fail();
         }
     }
     Ok(())

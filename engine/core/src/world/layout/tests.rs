@@ -2,6 +2,7 @@
 
 use super::schema::{FILE, Form, Key};
 use super::*;
+use crate::diagnostic::Kind;
 use crate::world::scene::{Shape, Texture};
 
 const START: &str = "[[start]]\nposition_m = [0, 0]\n";
@@ -13,7 +14,7 @@ fn parse(text: &str) -> Result<Layout> {
 /// The code, the underlined text, the words beside it and the next step.
 fn mistake(text: &str) -> (&'static str, String, String, String) {
     let error = *parse(text).unwrap_err();
-    assert_eq!(error.kind, Kind::Input);
+    assert_eq!(error.kind(), Kind::Input);
     assert!(error.others.is_empty(), "one cause, one error: {text}: {:?}", error.others);
     let place = error.place.unwrap_or_else(|| panic!("no place: {}", error.message));
     let marked = place.source.text[place.span].to_owned();

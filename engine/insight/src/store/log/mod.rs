@@ -24,7 +24,7 @@ mod stored;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use engine::diagnostic::{Diagnostic, Kind, Result};
+use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Ledger, Plan};
 
 pub use read::read_log;
@@ -183,8 +183,7 @@ fn hex(bytes: &[u8]) -> String {
 }
 
 fn damaged(message: String) -> Diagnostic {
-    Diagnostic::new(Kind::State, "E-LOG-FILE", message)
-        .help("copy the folder of the run again, or run the behaviour again")
+    Diagnostic::new("E-LOG-FILE", message).help("copy the folder of the run again, or run the behaviour again")
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use super::{
     CHUNK_STEPS, DIGEST_BYTES, FORMAT, FORMAT_OF_LEGS, Header, MAGIC, PREFIX_BYTES, PhaseEntry, RuleEntry, RunLog,
     damaged, digest, hex,
 };
-use engine::diagnostic::{Diagnostic, Kind, Result, printable};
+use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::experiment::{Ledger, LedgerLeg, MOST_STEPS, Plan, Record, RecordShape};
 use sha2::{Digest, Sha256};
 
@@ -18,9 +18,7 @@ pub fn read_log(bytes: &[u8], plan: &Plan, seed: u64, run: &str) -> Result<RunLo
     if header.run_sha256 != hex(&Sha256::digest(run.as_bytes())) || header.seed != seed {
         let message =
             format!("the log belongs to another run: of '{}' with seed {}", printable(&header.behaviour), header.seed);
-        return Diagnostic::new(Kind::State, "E-LOG-RUN", message)
-            .help("keep log.bin and run.toml of one run together")
-            .into();
+        return Diagnostic::new("E-LOG-RUN", message).help("keep log.bin and run.toml of one run together").fail();
     }
     let stretches = stretches(&header, plan)?;
     check_length(&stretches, body)?;
@@ -31,7 +29,7 @@ pub fn read_log(bytes: &[u8], plan: &Plan, seed: u64, run: &str) -> Result<RunLo
     }
     let test = legs.pop().and_then(|leg| Ledger::from_legs(vec![leg]));
     let Some((learning, test)) = Ledger::from_legs(legs).zip(test) else {
-        return damaged("the log's counts do not fit its records".to_owned()).into();
+        return damaged("the log's counts do not fit its records".to_owned()).fail();
     };
     let log = RunLog { learning, test };
     check_records(&log, plan)?;
@@ -59,7 +57,7 @@ fn stretches(header: &Header, plan: &Plan) -> Result<Vec<Stretch>> {
     let legs = || header.earlier.iter().zip(&plan.earlier);
     let counts_fit = legs().all(|(entry, leg)| entry.learning.steps == leg.steps);
     if header.earlier.len() != plan.earlier.len() || !counts_fit {
-        return damaged("the log's legs are not those of its run".to_owned()).into();
+        return damaged("the log's legs are not those of its run".to_owned()).fail();
     }
     let mut all = Vec::new();
     for (entry, leg) in legs() {
@@ -73,27 +71,27 @@ fn stretches(header: &Header, plan: &Plan) -> Result<Vec<Stretch>> {
 fn header(bytes: &[u8]) -> Result<(Header, &[u8])> {
     let word = |at: usize| bytes.get(at..)?.first_chunk().map(|word| u32::from_le_bytes(*word));
     let (Some(format), Some(length)) = (word(8), word(12)) else {
-        return damaged(format!("the log ends after {} bytes, before its header", bytes.len())).into();
+        return damaged(format!("the log ends after {} bytes, before its header", bytes.len())).fail();
     };
     if bytes[..8] != MAGIC {
-        return damaged("this file is not a log of a run".to_owned()).into();
+        return damaged("this file is not a log of a run".to_owned()).fail();
     }
     if ![FORMAT, FORMAT_OF_LEGS].contains(&format) {
         let message = format!("the log has format {format}, this engine reads formats {FORMAT} and {FORMAT_OF_LEGS}");
-        let error = Diagnostic::new(Kind::State, "E-LOG-FILE", message);
-        return error.help("read it with the engine that wrote it, or run the behaviour again").into();
+        let error = Diagnostic::new("E-LOG-FILE", message);
+        return error.help("read it with the engine that wrote it, or run the behaviour again").fail();
     }
     let end = PREFIX_BYTES + length as usize;
     let (Some(all_before), Some(sum)) = (bytes.get(..end), bytes.get(end..end + DIGEST_BYTES)) else {
-        return damaged(format!("the log ends after {} bytes, inside its header", bytes.len())).into();
+        return damaged(format!("the log ends after {} bytes, inside its header", bytes.len())).fail();
     };
     if Sha256::digest(all_before).as_slice() != sum {
-        return damaged("the log's header does not match its checksum".to_owned()).into();
+        return damaged("the log's header does not match its checksum".to_owned()).fail();
     }
     let header: Header = serde_json::from_slice(&all_before[PREFIX_BYTES..])
         .map_err(|error| Box::new(damaged(format!("the log's header cannot be read: {error}"))))?;
     if header.earlier.is_empty() != (format == FORMAT) {
-        return damaged(format!("a log of format {format} cannot have {} earlier legs", header.earlier.len())).into();
+        return damaged(format!("a log of format {format} cannot have {} earlier legs", header.earlier.len())).fail();
     }
     Ok((header, &bytes[end + DIGEST_BYTES..]))
 }
@@ -110,7 +108,7 @@ fn check_length(stretches: &[Stretch], body: &[u8]) -> Result<()> {
         .iter()
         .try_fold(0_usize, |sum, Stretch { phase, shape, .. }| sum.checked_add(phase_bytes(*phase, shape.bytes())?));
     let Some(wanted) = wanted else {
-        return damaged("the log's header counts more steps than a log can hold".to_owned()).into();
+        return damaged("the log's header counts more steps than a log can hold".to_owned()).fail();
     };
     if body.len() == wanted {
         return Ok(());
@@ -120,7 +118,7 @@ fn check_length(stretches: &[Stretch], body: &[u8]) -> Result<()> {
     } else {
         format!("the log has {} bytes after its last step", body.len() - wanted)
     };
-    damaged(message).into()
+    damaged(message).fail()
 }
 
 /// The records of one phase, taken from the front of `rest`, which is long enough.
@@ -141,7 +139,7 @@ fn phase_records(
             let first = records.len() / record_bytes;
             let last = first + length / record_bytes - 1;
             let message = format!("steps {first} to {last} of {name} in the log do not match their checksum");
-            return damaged(message).into();
+            return damaged(message).fail();
         }
         records.extend_from_slice(chunk);
         *rest = tail;
@@ -171,7 +169,7 @@ fn check_records(log: &RunLog, plan: &Plan) -> Result<()> {
             .enumerate()
             .find(|(step, record)| !is_possible(record) || !ledger.fired(*step).all(|(_, value)| value.is_finite()));
         if let Some((step, _)) = wrong {
-            return damaged(format!("step {step} of {name} in the log is not one that the run can have done")).into();
+            return damaged(format!("step {step} of {name} in the log is not one that the run can have done")).fail();
         }
     }
     Ok(())

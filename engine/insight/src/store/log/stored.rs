@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::{LOG_FILE, RunLog, damaged, read_log};
 use crate::store::{StoredRun, read_stored};
-use engine::diagnostic::{Diagnostic, Kind, Result};
+use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::Summary;
 use engine::filter::Catalogue;
 
@@ -46,12 +46,12 @@ impl RecordedRun {
         let text = read_stored(&path)?;
         let summary: Summary = serde_json::from_str(&text.text).map_err(|error| {
             let message = format!("'{}' is not the summary of a run: {error}", text.path.display());
-            Box::new(Diagnostic::new(Kind::State, "E-RUN-FILE", message).help("run the behaviour again"))
+            Box::new(Diagnostic::new("E-RUN-FILE", message).help("run the behaviour again"))
         })?;
         if summary.log_sha256.as_deref() != Some(log.sha256().as_str()) {
             let message = format!("'{}' is not the log that '{}' was written for", path.display(), text.path.display());
-            let error = Diagnostic::new(Kind::State, "E-LOG-RUN", message);
-            return error.help("keep the files of one run together").into();
+            let error = Diagnostic::new("E-LOG-RUN", message);
+            return error.help("keep the files of one run together").fail();
         }
         Ok(Self { stored, log, summary: Some(summary) })
     }
@@ -59,19 +59,19 @@ impl RecordedRun {
 
 fn read_bytes(path: &Path) -> Result<Vec<u8>> {
     let unfit = |message: String| {
-        Diagnostic::new(Kind::State, "E-LOG-FILE", message)
+        Diagnostic::new("E-LOG-FILE", message)
             .help("give the folder of one seed, such as runs/wall/1 or runs/wall/1-30/7; an older run has no log: run it again")
     };
     let failed = |error: std::io::Error| Box::new(unfit(Diagnostic::disk("read", path, &error).message));
     let is_file = std::fs::metadata(path).map_err(failed)?.is_file();
     if !is_file {
-        return unfit(format!("'{}' is not a file", path.display())).into();
+        return unfit(format!("'{}' is not a file", path.display())).fail();
     }
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(failed)?;
     file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(failed)?;
     if bytes.len() as u64 > MAX_BYTES {
-        return damaged(format!("'{}' has more than {MAX_BYTES} bytes", path.display())).into();
+        return damaged(format!("'{}' has more than {MAX_BYTES} bytes", path.display())).fail();
     }
     Ok(bytes)
 }

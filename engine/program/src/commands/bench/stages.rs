@@ -128,7 +128,7 @@ impl Stages {
 
     fn filter(&mut self, index: usize) {
         if let Err(error) = black_box(self.chain.apply(black_box(&self.samples[index].image))) {
-            let error = Diagnostic::new(Kind::Limit, "E-FILTER", format!("a filter failed: {error}"));
+            let error = Diagnostic::new("E-FILTER", format!("a filter failed: {error}"));
             self.failure = Some(Box::new(error));
         }
     }

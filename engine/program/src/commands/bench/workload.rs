@@ -45,7 +45,7 @@ pub(super) fn plan(arguments: &BenchArguments) -> Result<Plan> {
     let plan = Plan::load(&arguments.behaviour, &overrides, filters)?;
     if !plan.settings.policies.is_empty() {
         let message = format!("'{}' combines policies and learns nothing", plan.behaviour.name());
-        return Diagnostic::new(Kind::Usage, "E-POLICY", message).help("measure a behaviour that learns").into();
+        return Diagnostic::new("E-COMBINES", message).help("measure a behaviour that learns").fail();
     }
     if arguments.texture { textured(plan) } else { Ok(plan) }
 }

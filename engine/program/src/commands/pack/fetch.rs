@@ -20,8 +20,8 @@ pub(super) struct Fetched {
 pub(super) fn fetch(source: &str, name: Option<&str>) -> Result<Fetched> {
     if source.contains("://") {
         if name.is_some() {
-            let error = Diagnostic::new(Kind::Usage, "E-PACK-ADDRESS", "--name chooses a pack of a folder");
-            return error.help("write the whole address instead").into();
+            let error = Diagnostic::new("E-PACK-ADDRESS", "--name chooses a pack of a folder");
+            return error.help("write the whole address instead").fail();
         }
         return remote(source);
     }
@@ -77,11 +77,11 @@ fn choose(folder: &Path, offers: &[(PathBuf, Offer)], name: Option<&str>) -> Res
                 offers.iter().map(|(_, offer)| format!("{}@{}", offer.name, offer.version)).collect();
             names.sort();
             let message = format!("the folder '{}' holds {what}", printable(&folder.display().to_string()));
-            let error = Diagnostic::new(Kind::Input, "E-PACK-NAME", message);
+            let error = Diagnostic::new("E-PACK-CHOICE", message);
             if names.is_empty() {
-                error.into()
+                error.fail()
             } else {
-                error.help(format!("write --name with one of: {}", names.join(", "))).into()
+                error.help(format!("write --name with one of: {}", names.join(", "))).fail()
             }
         }
     }
@@ -105,5 +105,5 @@ fn remote(source: &str) -> Result<Fetched> {
 pub(super) fn no_network(address: &str) -> Box<Diagnostic> {
     let message = format!("'{}' needs the network, which this program was built without", printable(address));
     let help = "build it with: cargo build --release --features share; files and folders always work";
-    Box::new(Diagnostic::new(Kind::Usage, "E-PACK-ADDRESS", message).help(help))
+    Box::new(Diagnostic::new("E-PACK-ADDRESS", message).help(help))
 }

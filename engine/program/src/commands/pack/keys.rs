@@ -16,7 +16,7 @@ pub(super) fn keygen(arguments: &KeygenArguments, console: &mut Console) -> std:
     let [secret, public] = ["key", "pub"].map(|ending| with_ending(&arguments.name, ending));
     if let Some(taken) = [&secret, &public].into_iter().find(|path| path.exists()) {
         let message = format!("'{}' is there already, and a lost key cannot be made again", taken.display());
-        let error = Diagnostic::new(Kind::Usage, "E-PACK-KEY", message).help("give another name");
+        let error = Diagnostic::new("E-PACK-KEY-USE", message).help("give another name");
         return Err(Box::new(error).into());
     }
     let password = if arguments.no_password { Password::None } else { password(arguments.password_stdin)? };
@@ -75,7 +75,7 @@ pub(super) fn trust(arguments: &TrustArguments, console: &mut Console) -> std::r
             console.line(&format!("trusted:  key {} signs the packs of '{owner}'", key_id(&key)?))?;
         }
         (None, Some(_)) => {
-            let error = Diagnostic::new(Kind::Usage, "E-PACK-KEY", "whose key is it?");
+            let error = Diagnostic::new("E-PACK-KEY-USE", "whose key is it?");
             return Err(Box::new(error.help("write: engine pack trust OWNER --key KEY")).into());
         }
     }
@@ -101,8 +101,8 @@ fn password(from_input: bool) -> Result<Password> {
     if std::io::stdin().is_terminal() {
         return Ok(Password::Ask);
     }
-    let error = Diagnostic::new(Kind::Usage, "E-PACK-KEY", "there is no terminal to ask for the key's password");
-    error.help("add --password-stdin; 'keygen' also takes --no-password").into()
+    let error = Diagnostic::new("E-PACK-KEY-USE", "there is no terminal to ask for the key's password");
+    error.help("add --password-stdin; 'keygen' also takes --no-password").fail()
 }
 
 /// Writes a secret that only its owner can read.

@@ -18,18 +18,14 @@ pub(super) fn new(arguments: &PackNewArguments, console: &mut Console) -> Result
     let text = &arguments.name;
     let full = if text.contains('/') { text.clone() } else { format!("local/{text}") };
     let name = PackName::try_from(full)
-        .map_err(|what| Box::new(Diagnostic::new(Kind::Usage, "E-PACK-NAME", what).help("such as ada/wall")))?;
+        .map_err(|what| Box::new(Diagnostic::new("E-PACK-NAME", what).help("such as ada/wall")))?;
     let folder = arguments.out.clone().unwrap_or_else(|| PathBuf::from(name.name()));
     let from = match &arguments.from {
         Some(script) => Some((script.as_path(), sources(&arguments.filters)?)),
         None => None,
     };
     if from.is_none() && !arguments.filters.filter_dir.is_empty() {
-        let error = Diagnostic::new(
-            Kind::Usage,
-            "E-PACK-FOLDER",
-            "--filter-dir takes the filters of a script, and none is named",
-        );
+        let error = Diagnostic::new("E-PACK-FOLDER", "--filter-dir takes the filters of a script, and none is named");
         return Err(Box::new(error.help("add --from SCRIPT")).into());
     }
     scaffold(&name, &folder, from)?;

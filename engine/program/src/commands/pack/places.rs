@@ -87,7 +87,7 @@ impl Places {
                     dependency.version
                 );
                 let help = "install that pack first: engine pack install FILE.pack";
-                Diagnostic::new(Kind::Input, "E-PACK-DEPENDS", message).help(help).into()
+                Diagnostic::new("E-PACK-DEPENDS", message).help(help).fail()
             }
         }
     }
@@ -100,7 +100,7 @@ fn folder(own: &str, shared: &str, usual: &str) -> Result<PathBuf> {
         .or_else(|| variable("HOME").map(|home| home.join(usual).join("engine")));
     found.ok_or_else(|| {
         let message = format!("there is no folder for packs: neither {own} nor HOME is set");
-        Box::new(Diagnostic::new(Kind::Disk, "E-PACK-HOME", message).help(format!("set {own} to a folder")))
+        Box::new(Diagnostic::new("E-PACK-HOME", message).help(format!("set {own} to a folder")))
     })
 }
 
@@ -125,7 +125,7 @@ pub(super) fn read_text(path: &Path) -> Result<String> {
     let bytes = pack::read_small(path)?;
     String::from_utf8(bytes).map_err(|_| {
         let message = format!("'{}' is not text", path.display());
-        Box::new(Diagnostic::new(Kind::Input, "E-PACK-FILE", message))
+        Box::new(Diagnostic::new("E-PACK-FILE", message))
     })
 }
 

@@ -19,7 +19,7 @@ pub(super) fn push(arguments: &PushArguments, console: &mut Console) -> std::res
     if signature.is_none() && !arguments.allow_unsigned {
         let message = format!("{} is not signed, and nobody would install it", pack.title());
         let help = format!("sign it first: engine pack sign {}; or add --allow-unsigned", arguments.pack.display());
-        return Err(Box::new(Diagnostic::new(Kind::Trust, "E-TRUST-UNSIGNED", message).help(help)).into());
+        return Err(Box::new(Diagnostic::new("E-TRUST-UNSIGNED", message).help(help)).into());
     }
     let place = if arguments.target.contains("://") {
         remote(&pack, signature.as_ref(), &arguments.target)?
@@ -36,9 +36,7 @@ pub(super) fn pull(arguments: &PullArguments, console: &mut Console) -> std::res
     let blob = format!("sha256:{}", fetched.pack.blob());
     if let Some(wanted) = arguments.digest.as_ref().filter(|wanted| **wanted != blob) {
         let message = format!("{} has the digest {blob}, not {}", fetched.pack.title(), printable(wanted));
-        return Err(
-            Box::new(Diagnostic::new(Kind::Trust, "E-TRUST-DIGEST", message).help("do not use this pack")).into()
-        );
+        return Err(Box::new(Diagnostic::new("E-TRUST-DIGEST", message).help("do not use this pack")).into());
     }
     let path = store(&fetched.pack, fetched.signature.as_ref(), &arguments.out)?;
     let signed = fetched.signature.as_ref().map(Signature::key_id);

@@ -59,7 +59,7 @@ fn read(bytes: &[u8]) -> Result<RunLog> {
 
 fn message(bytes: &[u8]) -> String {
     let error = read(bytes).unwrap_err();
-    assert_eq!((error.code, error.kind), ("E-LOG-FILE", Kind::State), "{}", error.message);
+    assert_eq!((error.code, error.kind()), ("E-LOG-FILE", Kind::State), "{}", error.message);
     error.message
 }
 
@@ -132,7 +132,7 @@ fn another_format_is_said_with_both_numbers() {
 #[test]
 fn a_log_of_another_run_is_refused() {
     let error = read_log(&SAMPLE.file, &SAMPLE.plan, SEED, "another run.toml").unwrap_err();
-    assert_eq!((error.code, error.kind), ("E-LOG-RUN", Kind::State));
+    assert_eq!((error.code, error.kind()), ("E-LOG-RUN", Kind::State));
     assert_eq!(read_log(&SAMPLE.file, &SAMPLE.plan, SEED + 1, RUN).unwrap_err().code, "E-LOG-RUN");
 }
 
