@@ -64,7 +64,7 @@ fn state_hash(world: &Path, catalogue: &Arc<Catalogue>) -> String {
     let behaviour = Arc::new(Behaviour::load(&bench.path().join("edges.rhai")).unwrap());
     let plan = Plan::with_filters(behaviour, &Overrides::default(), Arc::clone(catalogue));
     let plan = plan.unwrap_or_else(|error| panic!("{}: {}", world.display(), error.render(false)));
-    learn(&plan, 1, &AtomicBool::new(false), &|_| ()).unwrap().whole().unwrap().state_hash
+    learn(&plan, 1, &AtomicBool::new(false), &|_| ()).unwrap().state_hash
 }
 
 #[test]

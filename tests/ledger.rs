@@ -2,7 +2,9 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use engine::diagnostic::SourceText;
-use engine::experiment::{Ledger, Overrides, Phase, Plan, Playback, Snapshot, learn, learn_into, rescore, test_into};
+use engine::experiment::{
+    Ledger, Overrides, Phase, Plan, Playback, Snapshot, learn, learn_into, rescore, test_and_watch,
+};
 use engine::reward::Behaviour;
 
 use crate::support::root;
@@ -101,7 +103,7 @@ fn a_test_is_played_back_as_learning_is() {
     let stop = AtomicBool::new(false);
     let learned = learn(&plan, 2, &stop, &|_| ()).unwrap();
     let mut ledger = Ledger::new(&plan, 400);
-    test_into(&plan, &learned.policy, 2, &stop, &mut ledger).unwrap();
+    test_and_watch(&plan, &learned.policy, 2, &stop, &mut ledger).unwrap();
     assert!(ledger.records().all(|record| record.prey.is_some()));
     let mut playback = Playback::new(&plan, 2, Phase::Test, &ledger).unwrap();
     while playback.advance().unwrap().is_some() {

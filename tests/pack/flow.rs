@@ -139,7 +139,7 @@ fn a_replay_names_the_first_step_that_differs() {
     // The same from the ledgers themselves.
     let ledger = |pack: &Pack| {
         let runnable = pack.plan(&[], &Overrides::default(), Sources::default()).unwrap();
-        let mut log = insight::store::RunLog::new(&runnable.plan);
+        let mut log = engine::experiment::RunLog::new(&runnable.plan);
         engine::experiment::learn_into(&runnable.plan, 1, &never, &|_| (), &mut log.learning).unwrap();
         log.learning
     };

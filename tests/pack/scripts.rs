@@ -2,7 +2,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use engine::diagnostic::Kind;
-use engine::experiment::{Learned, Overrides, learn};
+use engine::experiment::{Overrides, learn};
 use engine::filter::Sources;
 use pack::Pack;
 
@@ -119,7 +119,7 @@ fn outcome(script: &str) -> Option<engine::diagnostic::Diagnostic> {
     let pack = Pack::parse(Path::new("x.pack"), pack_of(HEAD, &[files[0], (files[1].0, script.as_bytes()), files[2]]))
         .unwrap();
     let run = pack.plan(&[], &Overrides::default(), Sources::default()).and_then(|runnable| {
-        learn(&runnable.plan, 1, &AtomicBool::new(false), &|_| ()).and_then(Learned::whole).map(|_| ())
+        learn(&runnable.plan, 1, &AtomicBool::new(false), &|_| ()).map(drop).map_err(|broken| broken.error)
     });
     run.err().map(|error| *error)
 }

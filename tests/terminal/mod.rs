@@ -9,14 +9,14 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use engine::diagnostic::SourceText;
-use engine::experiment::{Ledger, Overrides, Plan, learn_into, test_into};
+use engine::experiment::{Ledger, Overrides, Plan, learn_into, test_and_watch};
 use engine::reward::Behaviour;
 use engine::world::Layout;
 use insight::page::{Document, Moments};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use watch::terminal::{Ink, View, draw};
-use watch::{Board, SavedRun, SeedRun};
+use watch::{Board, SavedRun, WatchedSeed};
 
 use crate::support::{SCRIPT, WORLD};
 
@@ -45,17 +45,17 @@ fn put(board: &Board, number: u64, plan: Plan, tests: bool) {
     let never = AtomicBool::new(false);
     let seed = |seed| {
         let mut learning = Ledger::new(plan.first_leg(), plan.first_steps());
-        let learned = learn_into(&plan, seed, &never, &|_| (), &mut learning).unwrap().whole().unwrap();
+        let learned = learn_into(&plan, seed, &never, &|_| (), &mut learning).unwrap();
         if !tests {
             let (learned, learning) = (Arc::new(learned), Arc::new(learning));
-            return SeedRun { learned, learning, test: None, tested: Ledger::off() };
+            return WatchedSeed { learned, learning, test: None, tested: Ledger::off() };
         }
         let mut tested = Ledger::new(&plan, plan.settings.run.test_steps);
-        let test = test_into(&plan, &learned.policy, seed, &never, &mut tested).unwrap();
-        SeedRun { learned: Arc::new(learned), learning: Arc::new(learning), test: Some(test.figures), tested }
+        let test = test_and_watch(&plan, &learned.policy, seed, &never, &mut tested).unwrap();
+        WatchedSeed { learned: Arc::new(learned), learning: Arc::new(learning), test: Some(test.figures), tested }
     };
     let seeds = vec![seed(1), seed(2)];
-    let data: Vec<_> = seeds.iter().map(SeedRun::data).collect();
+    let data: Vec<_> = seeds.iter().map(WatchedSeed::data).collect();
     let document = Document::new(&plan, &data, Moments { shots: 0, scans: false, seeds: Some(0) }).unwrap();
     let run = Arc::new(SavedRun { save: number, plan, seeds });
     board.run(&run, tests, &format!("save {number}: learned in 0.12 s, tested"), &document).unwrap();

@@ -15,6 +15,7 @@
 pub mod diagnostic;
 pub mod geometry;
 pub mod random;
+pub mod saved;
 pub mod settings;
 
 pub mod world;

@@ -41,6 +41,18 @@ impl Random {
         Self { generator }
     }
 
+    /// Where the stream stands, in words of 32 bits: the lower and the upper half of the number.
+    #[must_use]
+    pub fn position(&self) -> (u64, u64) {
+        let words = self.generator.get_word_pos();
+        (words as u64, (words >> 64) as u64)
+    }
+
+    /// Puts the stream where it stood once, see [`Random::position`].
+    pub fn set_position(&mut self, low: u64, high: u64) {
+        self.generator.set_word_pos(u128::from(low) | u128::from(high) << 64);
+    }
+
     /// A number in [0, 1), a multiple of 2^-53.
     pub fn unit(&mut self) -> f64 {
         (self.generator.next_u64() >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)

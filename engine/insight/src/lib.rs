@@ -6,8 +6,10 @@
 //! | [`lint`] | mistakes in a behaviour, and ways to cheat its reward, found before it is learned |
 //! | [`report`] | pictures, CSV, files written whole or not at all |
 //! | [`page`] | a run as one document of data, and the HTML that shows it |
+//! | [`folder`] | a run's folder, written |
 //! | [`record`] | a run as an MCAP file for Foxglove and Rerun |
 
+pub mod folder;
 pub mod lint;
 pub mod page;
 pub mod record;

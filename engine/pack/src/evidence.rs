@@ -8,11 +8,9 @@ use super::marks::{Marks, STEPS};
 use super::{Digest, MAX_EVIDENCE_STEPS, MAX_SEED_STEPS, MAX_SEEDS, Pack, Runnable, fingerprint, malformed};
 use engine::diagnostic::{Diagnostic, Kind, Result};
 use engine::experiment::{
-    Cycle, Progress, Step, TestRun, Trail, WINDOW_STEPS, in_parallel, learn_into, learned_at, test_combined, test_into,
+    Plan, Progress, RunLog, SeedRun, Summary, TestRun, Trail, WINDOW_STEPS, in_parallel, run_seed,
 };
 use engine::learner::Policy;
-use engine::robot::SimulatedRobot;
-use insight::store::RunLog;
 
 /// The claims of a pack.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -95,7 +93,7 @@ pub struct Difference {
 /// Steps of learning and of the test of one seed.
 fn steps_of_seed(runnable: &Runnable) -> [u64; 2] {
     let run = &runnable.plan.settings.run;
-    [if runnable.members.is_empty() { run.steps } else { 0 }, run.test_steps]
+    [if runnable.plan.learns() { run.steps } else { 0 }, run.test_steps]
 }
 
 /// Refuses evidence that nobody could measure again in reasonable time: a stranger's claim must not hold a machine for
@@ -131,53 +129,29 @@ pub fn measure(
     report: &(dyn Fn(Progress) + Sync),
 ) -> Result<Vec<Proof>> {
     check_length(runnable, seeds.len())?;
-    let proofs = in_parallel(seeds, threads, |seed| {
-        if runnable.members.is_empty() { learned(runnable, seed, stop, report) } else { combined(runnable, seed, stop) }
-    })?;
+    let proofs = in_parallel(seeds, threads, |seed| proof(&runnable.plan, seed, stop, report))?;
     if stop.load(Ordering::Relaxed) {
         return Diagnostic::new("E-PACK-STOPPED", "stopped before every seed was measured").fail();
     }
     Ok(proofs)
 }
 
-fn learned(runnable: &Runnable, seed: u64, stop: &AtomicBool, report: &(dyn Fn(Progress) + Sync)) -> Result<Proof> {
-    let mut log = RunLog::new(&runnable.plan);
-    let learned = learn_into(&runnable.plan, seed, stop, report, &mut log.learning)?.whole()?;
-    let tested = test_into(&runnable.plan, &learned.policy, seed, stop, &mut log.test)?;
+fn proof(plan: &Plan, seed: u64, stop: &AtomicBool, report: &(dyn Fn(Progress) + Sync)) -> Result<Proof> {
+    let mut log = RunLog::new(plan);
+    let SeedRun { learned, tested, summary } = run_seed(plan, seed, stop, report, &mut log)?;
     let marks = Marks::new(&log.learning, &log.test);
-    let curve = learned.tally.curve();
-    let whole = (learned.steps / WINDOW_STEPS) as usize;
-    let states = learned.policy.rows().iter().flatten().count();
-    let claim = Claim {
-        learned_at: learned_at(&curve[..whole]),
-        reinforcement_per_400: curve,
-        ..claim(seed, learned.state_hash, states, &tested)
-    };
-    Ok(Proof { claim, policy: Some(learned.policy), early: Some(learned.early), tested, marks })
+    let claim = claim(summary, &tested);
+    let (policy, early) = learned.map(|learned| (learned.policy, learned.early)).unzip();
+    Ok(Proof { claim, policy, early, tested, marks })
 }
 
-fn combined(runnable: &Runnable, seed: u64, stop: &AtomicBool) -> Result<Proof> {
-    let mut log = RunLog::new(&runnable.plan);
-    let mut keep = |cycle: &Cycle<SimulatedRobot>, step: &Step| log.test.add(cycle, step, false);
-    let tested = test_combined(&runnable.plan, &runnable.members, seed, stop, &mut keep)?.run;
-    let marks = Marks::new(&log.learning, &log.test);
-    let states = runnable.members.iter().map(|member| member.policy.rows().iter().flatten().count()).sum();
-    Ok(Proof {
-        claim: claim(seed, tested.state_hash.clone(), states, &tested),
-        policy: None,
-        early: None,
-        tested,
-        marks,
-    })
-}
-
-fn claim(seed: u64, state_hash: String, states_seen: usize, tested: &TestRun) -> Claim {
-    let figures = &tested.figures;
+fn claim(summary: Summary, tested: &TestRun) -> Claim {
+    let Summary { seed, state_hash, states_seen, learned_at, reinforcement_per_400, test: figures, .. } = summary;
     Claim {
         seed,
         state_hash,
         test_hash: tested.state_hash.clone(),
-        learned_at: None,
+        learned_at,
         states_seen,
         failures_per_1000: figures.failures_per_1000,
         laps: figures.laps,
@@ -185,7 +159,7 @@ fn claim(seed: u64, state_hash: String, states_seen: usize, tested: &TestRun) ->
         mean_speed: figures.mean_speed,
         spinning: figures.spinning,
         does_task: figures.does_task,
-        reinforcement_per_400: Vec::new(),
+        reinforcement_per_400,
     }
 }
 

@@ -10,20 +10,18 @@ use tempfile::TempDir;
 
 use super::{EntryPath, Pack, malformed};
 use engine::diagnostic::{Diagnostic, Kind, Result, SourceText, printable};
-use engine::experiment::{Member, Overrides, Plan};
+use engine::experiment::{Overrides, Plan};
 use engine::filter::{Catalogue, Sources};
 use engine::learner::Policy;
 use engine::reward::Behaviour;
 use engine::world::Layout;
-use insight::store::{members_from_texts, policy_from_toml, policy_to_toml};
+use insight::store::{policy_from_toml, policy_to_toml, with_policy_texts};
 
 /// A pack's behaviour, ready to be learned or tested.
 #[derive(Clone)]
 pub struct Runnable {
-    /// The behaviour with its world.
+    /// The behaviour with its world and the policies that it combines.
     pub plan: Plan,
-    /// The policies that it combines; none for a behaviour that learns.
-    pub members: Vec<Member>,
     /// The folder that the pack's own filters were unpacked to; it goes when the last copy of this goes.
     pub unpacked: Option<Arc<TempDir>>,
 }
@@ -31,7 +29,8 @@ pub struct Runnable {
 impl Runnable {
     /// The text of a policy that this behaviour learned.
     pub(super) fn policy_text(&self, policy: &Policy) -> Result<String> {
-        policy_to_toml(self.plan.behaviour.name(), &self.plan.settings, &self.plan.filters, policy)
+        let plan = &self.plan;
+        policy_to_toml(plan.behaviour.name(), &plan.settings, &plan.filters, policy, None)
     }
 }
 
@@ -57,12 +56,8 @@ impl Pack {
         sources.folders.extend(unpacked.iter().map(|folder| folder.path().to_owned()));
         let filters = Arc::new(Catalogue::new(sources)?);
         let plan = Plan::with_layout(Arc::clone(&behaviour), settings, layout, filters)?.with_changes(overrides)?;
-        let members = if plan.settings.policies.is_empty() {
-            Vec::new()
-        } else {
-            members_from_texts(&plan, self.policies(&behaviour)?)?
-        };
-        Ok(Runnable { plan, members, unpacked })
+        let plan = if plan.learns() { plan } else { with_policy_texts(plan, &self.policies(&behaviour)?)? };
+        Ok(Runnable { plan, unpacked })
     }
 
     /// The learned policy that the pack carries, if it carries one.
@@ -72,7 +67,7 @@ impl Pack {
     pub fn policy(&self, plan: &Plan) -> Result<Option<Policy>> {
         let Some(path) = &self.manifest().entry.policy else { return Ok(None) };
         let source = self.text(path.as_str())?;
-        let policy = policy_from_toml(&source, &plan.settings, plan.grid()?.states());
+        let policy = policy_from_toml(&source, plan);
         policy.map(Some).map_err(|mut error| {
             // The run is the user's, but the file is the author's: an input, not a state.
             error.code = "E-PACK-POLICY";

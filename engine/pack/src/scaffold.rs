@@ -15,7 +15,7 @@ use engine::diagnostic::{Diagnostic, Kind, Result, printable};
 use engine::experiment::{Overrides, Plan};
 use engine::filter::{Catalogue, Form, Sources};
 use insight::report::write_atomic;
-use insight::store::load_members;
+use insight::store::with_policies;
 
 const SCRIPT: &str = include_str!("../../../scripts/wall.rhai");
 const WORLD: &str = include_str!("../../../worlds/room.toml");
@@ -114,14 +114,12 @@ fn collect(plan: &Plan, files: &mut Files) -> Result<Option<String>> {
     files.insert(format!("scripts/{stem}.rhai"), plan.behaviour.source().text.as_bytes().to_vec());
     let world = format!("worlds/{}.toml", plan.layout.name.to_lowercase());
     files.insert(world.clone(), plan.layout.source.text.as_bytes().to_vec());
-    if !plan.settings.policies.is_empty() {
-        for (member, policy) in load_members(plan)?.iter().zip(&plan.settings.policies) {
-            let Some(path) = inside("scripts", policy.path.trim_end_matches("policy.toml")) else {
-                let message = format!("the policy '{}' stands outside the pack", printable(&policy.path));
-                return malformed("E-PACK-POLICY", message).help("name it by a path below the script's folder").fail();
-            };
-            files.insert(format!("{path}/policy.toml"), member.source.text.as_bytes().to_vec());
-        }
+    for (member, policy) in with_policies(plan.clone())?.members.iter().zip(&plan.settings.policies) {
+        let Some(path) = inside("scripts", policy.path.trim_end_matches("policy.toml")) else {
+            let message = format!("the policy '{}' stands outside the pack", printable(&policy.path));
+            return malformed("E-PACK-POLICY", message).help("name it by a path below the script's folder").fail();
+        };
+        files.insert(format!("{path}/policy.toml"), member.source.text.as_bytes().to_vec());
     }
     let named = &plan.settings.world;
     Ok((named.contains('/') || named.ends_with(".toml") || *named != plan.layout.name.to_lowercase()).then_some(world))

@@ -202,7 +202,7 @@ impl Job {
 
     fn learn_and_test(&self, seed: u64, stop: &AtomicBool, done: &(dyn Fn(u64) + Sync)) -> Result<Option<Outcome>> {
         let Ok(plan) = &self.plan else { return Ok(None) };
-        let learned = learn(plan, seed, stop, &|_| done(WINDOW_STEPS))?.whole()?;
+        let learned = learn(plan, seed, stop, &|_| done(WINDOW_STEPS))?;
         let tested = test(plan, &learned.policy, seed, stop)?;
         done(plan.settings.run.test_steps);
         let trials = (self.trials.iter())
@@ -214,13 +214,13 @@ impl Job {
             })
             .collect::<Result<Vec<_>>>()?;
         // The clock is not read here: no row depends on it.
-        let summary = Summary::new(plan, &learned, tested.figures.clone(), 1.0);
+        let summary = Summary::new(plan, seed, Some(&learned), &tested);
         Ok(Some(Outcome { summary, early: learned.early, tested, policy: learned.policy, trials }))
     }
 }
 
 fn look(plan: &Plan, policy: &Policy, seed: u64, stop: &AtomicBool, look: Look) -> Result<(TestFigures, Seen)> {
     let mut watcher = Watcher::new(look);
-    let tested = test_and_watch(plan, policy, seed, stop, &mut |cycle, step| watcher.watch(cycle, step))?;
+    let tested = test_and_watch(plan, policy, seed, stop, &mut watcher)?;
     Ok((tested.figures, watcher.finish()))
 }

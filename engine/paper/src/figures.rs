@@ -6,7 +6,9 @@ use super::campaign::{JobResult, Measured, Outcome};
 use super::claims::{ALIASES, CORRIDOR, OBJECT, PLATFORM, WALL};
 use super::job::Learn;
 use engine::diagnostic::Result;
-use engine::experiment::{CertaintyGrid, Overrides, Plan, Snapshot, Spread, Trail, WINDOW_STEPS, test_and_watch};
+use engine::experiment::{
+    CertaintyGrid, Cycle, Each, Overrides, Plan, Snapshot, Spread, Step, Trail, WINDOW_STEPS, test_and_watch,
+};
 use insight::report::{
     CurveData, Picture, TrajectoryData, certainty_grid, learning_curve, snapshot_frame, trajectories,
 };
@@ -128,7 +130,7 @@ fn map(measured: &Measured) -> Result<Option<Figure>> {
     let Some(mut grid) = CertaintyGrid::new(&plan.layout, &plan.settings.laser) else { return Ok(None) };
     let never = AtomicBool::new(false);
     let seed = outcome.summary.seed;
-    let tested = test_and_watch(&plan, &outcome.policy, seed, &never, &mut |cycle, _| grid.follow(cycle))?;
+    let tested = test_and_watch(&plan, &outcome.policy, seed, &never, &mut grid)?;
     let title = "Certainty grid of wall following";
     let picture = certainty_grid(title, &grid.greys(), grid.columns(), grid.cell_m(), grid.origin_m(), &tested.trail)?;
     let caption = format!(
@@ -149,11 +151,12 @@ fn alike(measured: &Measured) -> Result<Vec<Figure>> {
     let (Some((outcome, twins)), (_, Ok(plan))) = (least, &job.trials[at]) else { return Ok(Vec::new()) };
     let mut taken = Vec::new();
     let never = AtomicBool::new(false);
-    test_and_watch(plan, &outcome.policy, outcome.summary.seed, &never, &mut |cycle, step| {
+    let mut take = Each(|cycle: &Cycle<_>, step: &Step| {
         if twins.frames.contains(&step.index) {
             taken.push(Snapshot::of(cycle));
         }
-    })?;
+    });
+    test_and_watch(plan, &outcome.policy, outcome.summary.seed, &never, &mut take)?;
     let action = plan.settings.actions[twins.action];
     let mut all = Vec::new();
     for (index, snapshot) in taken.iter().enumerate() {

@@ -1,11 +1,12 @@
 //! What a trial looks at besides the figures of every test: bends, crossings, and what follows on each state.
 
 use std::f64::consts::FRAC_PI_3;
+use std::ops::ControlFlow;
 
 use super::job::Look;
-use engine::experiment::{Cycle, Step};
+use engine::experiment::{Cycle, Observer, Step};
 use engine::geometry::{Pose, wrap_angle};
-use engine::robot::SimulatedRobot;
+use engine::robot::Robot;
 
 /// Bends are measured between pieces of this length, metres.
 const PIECE_M: f64 = 0.5;
@@ -88,21 +89,28 @@ struct Visit {
     ranges: [f32; 3],
 }
 
+impl<R: Robot> Observer<R> for Watcher {
+    fn stepped(&mut self, cycle: &Cycle<R>, step: &Step) -> ControlFlow<()> {
+        self.watch(cycle, step);
+        ControlFlow::Continue(())
+    }
+}
+
 impl Watcher {
     pub(super) fn new(look: Look) -> Self {
         let (robot, prey) = (Bends::default(), Bends::default());
         Self { look, robot, prey, crossing: None, last: None, choices: [0; 3], visits: Vec::new(), before: None }
     }
 
-    pub(super) fn watch(&mut self, cycle: &Cycle<SimulatedRobot>, step: &Step) {
-        let pose = cycle.robot().world().body().pose;
+    fn watch<R: Robot>(&mut self, cycle: &Cycle<R>, step: &Step) {
+        let pose = cycle.robot().whereabouts().unwrap_or_default().pose;
         let scan = &cycle.observation().scan.ranges_m;
         let ranges = [scan[0], scan[scan.len() / 2], scan[scan.len() - 1]];
         match self.look {
             Look::Figures => {}
             Look::Bends => {
                 self.robot.follow(pose);
-                if let Some(prey) = cycle.robot().world().prey() {
+                if let Some(prey) = cycle.robot().prey() {
                     self.prey.follow(prey);
                 }
                 if step.recover {

@@ -13,7 +13,7 @@ use insight::page::{Checked, Document, Finding, SeedData, SeedView};
 
 /// One seed of a run.
 #[derive(Debug)]
-pub struct SeedRun {
+pub struct WatchedSeed {
     /// What it learned; of a behaviour that combines policies nothing, in no steps.
     pub learned: Arc<Learned>,
     /// Steps of learning.
@@ -24,7 +24,7 @@ pub struct SeedRun {
     pub tested: Ledger,
 }
 
-impl SeedRun {
+impl WatchedSeed {
     /// The seed as the page's room reads it.
     #[must_use]
     pub fn data(&self) -> SeedData<'_> {
@@ -48,7 +48,7 @@ pub struct SavedRun {
     /// The plan.
     pub plan: Plan,
     /// The seeds.
-    pub seeds: Vec<SeedRun>,
+    pub seeds: Vec<WatchedSeed>,
 }
 
 /// What one message to the page holds.

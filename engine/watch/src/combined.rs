@@ -5,18 +5,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-use super::board::SeedRun;
+use super::board::WatchedSeed;
 use super::files::Files;
 use super::findings;
 use super::relearn::Relearner;
 use super::session::MOST_LEDGER_BYTES;
 use engine::diagnostic::{Diagnostic, Kind, Result};
-use engine::experiment::{
-    Cycle, Learned, Ledger, Member, Plan, RecordShape, Step, Tally, Trail, in_parallel, test_combined,
-};
+use engine::experiment::{Decider, Learned, Ledger, Plan, RecordShape, Tally, Trail, in_parallel};
 use engine::learner::Policy;
-use engine::robot::SimulatedRobot;
-use insight::store::{load_members, policy_files};
+use insight::store::{policy_files, with_policies};
 
 /// Tests the combination with all seeds and shows it; its policies are watched from then on.
 pub(super) fn retest(again: &Relearner, plan: Plan, stop: &AtomicBool, files: &Mutex<Files>) -> Result<()> {
@@ -27,13 +24,13 @@ pub(super) fn retest(again: &Relearner, plan: Plan, stop: &AtomicBool, files: &M
     }
     let started = Instant::now();
     files.lock().unwrap_or_else(PoisonError::into_inner).watch(policy_files(&plan))?;
-    let members = load_members(&plan)?;
+    let plan = with_policies(plan)?;
     let seeds = &again.settings.seeds;
     let count = if seeds.len() == 1 { "one seed".to_owned() } else { format!("{} seeds", seeds.len()) };
     let steps = plan.settings.run.test_steps;
-    again.board.working(&format!("testing {} policies as one, {count}, {steps} steps each", members.len()));
+    again.board.working(&format!("testing {} policies as one, {count}, {steps} steps each", plan.members.len()));
     let room = MOST_LEDGER_BYTES / (seeds.len() * RecordShape::of(&plan).bytes()).max(1) as u64;
-    let tested = in_parallel(seeds, again.settings.threads, |seed| test(&plan, &members, seed, room, stop))?;
+    let tested = in_parallel(seeds, again.settings.threads, |seed| test(&plan, seed, room, stop))?;
     if stop.load(Ordering::Relaxed) {
         return Ok(());
     }
@@ -44,17 +41,16 @@ pub(super) fn retest(again: &Relearner, plan: Plan, stop: &AtomicBool, files: &M
     Ok(())
 }
 
-fn test(plan: &Plan, members: &[Member], seed: u64, room: u64, stop: &AtomicBool) -> Result<SeedRun> {
+fn test(plan: &Plan, seed: u64, room: u64, stop: &AtomicBool) -> Result<WatchedSeed> {
     let mut tested = Ledger::new(plan, plan.settings.run.test_steps.min(room));
-    let mut keep = |cycle: &Cycle<SimulatedRobot>, step: &Step| tested.add(cycle, step, false);
-    let run = test_combined(plan, members, seed, stop, &mut keep)?.run;
+    let run = Decider::Combined.test(plan, seed, stop, &mut tested)?;
     let learned = Arc::new(nothing_learned(plan, seed));
-    Ok(SeedRun { learned, learning: Arc::new(Ledger::off()), test: Some(run.figures), tested })
+    Ok(WatchedSeed { learned, learning: Arc::new(Ledger::off()), test: Some(run.figures), tested })
 }
 
 /// No step of learning.
 fn nothing_learned(plan: &Plan, seed: u64) -> Learned {
     let tally = Tally::new(plan.behaviour.rules().len(), 0);
     let policy = Policy::new(plan.settings.actions.len(), Vec::new());
-    Learned { seed, steps: 0, tally, policy, early: Trail::default(), state_hash: String::new(), fault: None }
+    Learned { seed, steps: 0, tally, policy, early: Trail::default(), state_hash: String::new() }
 }

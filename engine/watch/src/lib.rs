@@ -25,6 +25,6 @@ mod socket;
 #[cfg(feature = "tui")]
 pub mod terminal;
 
-pub use board::{Board, SavedRun, SeedRun, Shown, ShownRun};
+pub use board::{Board, SavedRun, Shown, ShownRun, WatchedSeed};
 pub use relearn::{Asker, Finished, Relearner, WatchSettings};
 pub use server::{Address, listen};

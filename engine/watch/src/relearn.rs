@@ -7,12 +7,12 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::board::{Board, SavedRun, SeedRun};
+use super::board::{Board, SavedRun, WatchedSeed};
 use super::files::{Files, SETTLE};
 use super::session::Session;
 use super::{combined, findings};
 use engine::diagnostic::{Diagnostic, Result};
-use engine::experiment::{Ledger, Overrides, Plan, TestRun, WINDOW_STEPS, in_parallel, test_into};
+use engine::experiment::{Ledger, Overrides, Plan, TestRun, WINDOW_STEPS, in_parallel, test_and_watch};
 use engine::filter::Catalogue;
 use engine::learner::Carry;
 use insight::page::{Document, Moments};
@@ -149,7 +149,7 @@ impl Relearner {
 
     fn relearn(&mut self, why: Why, stop: &AtomicBool, files: &Mutex<Files>) -> Result<()> {
         let plan = self.plan(files);
-        if plan.as_ref().is_ok_and(|plan| !plan.settings.policies.is_empty()) {
+        if plan.as_ref().is_ok_and(|plan| !plan.learns()) {
             self.session = None;
             return combined::retest(self, plan?, stop, files);
         }
@@ -223,7 +223,7 @@ impl Relearner {
             return Ok(());
         }
         let (tests, ledgers): (Vec<TestRun>, Vec<Ledger>) = tested.into_iter().unzip();
-        let seeds = run.seeds.iter().zip(&tests).zip(ledgers).map(|((seed, test), tested)| SeedRun {
+        let seeds = run.seeds.iter().zip(&tests).zip(ledgers).map(|((seed, test), tested)| WatchedSeed {
             learned: Arc::clone(&seed.learned),
             learning: Arc::clone(&seed.learning),
             test: Some(test.figures.clone()),
@@ -243,7 +243,7 @@ impl Relearner {
         in_parallel(&indices, self.settings.threads, |index| {
             let seed = &run.seeds[index as usize].learned;
             let mut tested = Ledger::new(&run.plan, run.plan.settings.run.test_steps.min(room));
-            let test = test_into(&run.plan, &seed.policy, seed.seed, stop, &mut tested)?;
+            let test = test_and_watch(&run.plan, &seed.policy, seed.seed, stop, &mut tested)?;
             Ok((test, tested))
         })
     }
@@ -266,12 +266,12 @@ impl Relearner {
     pub(super) fn show(
         &self,
         plan: Plan,
-        seeds: Vec<SeedRun>,
+        seeds: Vec<WatchedSeed>,
         done: bool,
         text: &str,
         error: Option<&Diagnostic>,
     ) -> Result<Arc<SavedRun>> {
-        let data: Vec<_> = seeds.iter().map(SeedRun::data).collect();
+        let data: Vec<_> = seeds.iter().map(WatchedSeed::data).collect();
         let document = Document::new(&plan, &data, Moments { shots: 0, scans: done, seeds: Some(1) })?;
         let run = Arc::new(SavedRun { save: self.save, plan, seeds });
         self.board.run(&run, done, text, &document)?;

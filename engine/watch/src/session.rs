@@ -4,9 +4,9 @@
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use super::board::SeedRun;
+use super::board::WatchedSeed;
 use engine::diagnostic::{Diagnostic, Kind, Result};
-use engine::experiment::{Learned, Learning, Ledger, Leg, MOST_STEPS, Plan, RecordShape, WINDOW_STEPS, in_parallel};
+use engine::experiment::{Learning, Ledger, Leg, MOST_STEPS, Plan, RecordShape, WINDOW_STEPS, in_parallel};
 use engine::learner::Carry;
 
 /// Room for the steps of all seeds, bytes; of longer runs the beginnings are kept.
@@ -128,11 +128,13 @@ impl Session {
     ///
     /// # Errors
     /// What failed while a seed learned.
-    pub(super) fn seeds(&self, end: bool) -> Result<Vec<SeedRun>> {
+    pub(super) fn seeds(&self, end: bool) -> Result<Vec<WatchedSeed>> {
         let seed = |pupil: &mut Pupil| {
-            let learned: Learned = if end { pupil.learning.finish() } else { pupil.learning.snapshot() };
-            let learned = Arc::new(learned.whole()?);
-            Ok(SeedRun { learned, learning: Arc::clone(&pupil.ledger), test: None, tested: Ledger::off() })
+            let learned = Arc::new(if end { pupil.learning.finish() } else { pupil.learning.snapshot() });
+            if let Some(fault) = pupil.learning.fault() {
+                return Err(Box::new(fault.clone()));
+            }
+            Ok(WatchedSeed { learned, learning: Arc::clone(&pupil.ledger), test: None, tested: Ledger::off() })
         };
         self.pupils.iter().map(|pupil| seed(&mut lock(pupil))).collect()
     }

@@ -1,8 +1,10 @@
 //! A certainty grid: what the laser found on the way, as a map of free, occupied and unknown cells.
 
-use super::Cycle;
+use std::ops::ControlFlow;
+
+use super::{Cycle, Observer, Step};
 use crate::geometry::Pose;
-use crate::robot::SimulatedRobot;
+use crate::robot::Robot;
 use crate::settings::LaserSettings;
 use crate::world::Layout;
 
@@ -53,11 +55,6 @@ impl CertaintyGrid {
         let columns = ((size_m[0] / CELL_M).ceil() as usize).clamp(1, 4096);
         let rows = ((size_m[1] / CELL_M).ceil() as usize).clamp(1, MOST_CELLS / columns);
         Self { evidence: vec![0; columns * rows], columns, rows, origin_m, laser: laser.clone() }
-    }
-
-    /// Adds the robot's present scan at its true pose.
-    pub fn follow(&mut self, cycle: &Cycle<SimulatedRobot>) {
-        self.add(cycle.robot().world().body().pose, &cycle.observation().scan.ranges_m);
     }
 
     fn add(&mut self, robot: Pose, ranges_m: &[f32]) {
@@ -124,6 +121,16 @@ impl CertaintyGrid {
     #[must_use]
     pub const fn origin_m(&self) -> [f64; 2] {
         self.origin_m
+    }
+}
+
+/// Adds each scan at the robot's true pose.
+impl<R: Robot> Observer<R> for CertaintyGrid {
+    fn stepped(&mut self, cycle: &Cycle<R>, _: &Step) -> ControlFlow<()> {
+        if let Some(here) = cycle.robot().whereabouts() {
+            self.add(here.pose, &cycle.observation().scan.ranges_m);
+        }
+        ControlFlow::Continue(())
     }
 }
 

@@ -6,7 +6,7 @@ use crate::filter::Chain;
 use crate::learner::Policy;
 use crate::reward::Behaviour;
 use crate::settings::{FilterSettings, GridSettings, Settings};
-use crate::state::Grid;
+use crate::state::{Grid, GridMap};
 
 /// One policy of a combination.
 #[derive(Debug, Clone)]
@@ -39,7 +39,8 @@ impl Member {
         let chain = Chain::new(&self.filters, width_px, height_px, &plan.filters)
             .map_err(|error| wrong(&error.error.message))?;
         let grid = Grid::new(&self.grid, width_px, height_px).map_err(|error| wrong(&error.0))?;
-        Ok(Eyes::new(chain, grid))
+        let map = Box::new(GridMap::new(&self.grid, grid.clone()));
+        Ok(Eyes::new(chain, grid, map))
     }
 }
 

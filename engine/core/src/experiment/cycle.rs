@@ -4,44 +4,11 @@ use crate::diagnostic::{Diagnostic, Result};
 use crate::geometry::Twist;
 use crate::reward::{Facts, Judge};
 use crate::robot::Robot;
-use crate::sensors::observation::{Image, Observation, Scan};
-use crate::state::Grid;
+use crate::sensors::observation::{Image, Observation};
+use crate::state::{Grid, StateMap};
 
-use super::{Eyes, Plan};
+use super::{Eyes, Plan, Step};
 use filter_api::{Descriptor, Format};
-
-/// What one step led to.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Step {
-    /// The step's number, from 0.
-    pub index: u64,
-    /// The state in which the action was chosen.
-    pub state: usize,
-    /// The action.
-    pub action: usize,
-    /// The script's reward.
-    pub reward: f64,
-    /// The state at the end.
-    pub next_state: usize,
-    /// Whether the script asks for recovery.
-    pub recover: bool,
-    /// Whether the body touched something.
-    pub contact: bool,
-}
-
-impl Step {
-    /// Whether it ended badly: the script asks for recovery and rewards nothing.
-    #[must_use]
-    pub fn failed(&self) -> bool {
-        self.recover && self.reward <= 0.0
-    }
-
-    /// Whether it reached what the script wants: recovery after a reward above 0.
-    #[must_use]
-    pub fn reached(&self) -> bool {
-        self.recover && self.reward > 0.0
-    }
-}
 
 /// A robot with what turns its observations into states and rewards. It does not know who chooses the actions.
 pub struct Cycle<R> {
@@ -52,8 +19,11 @@ pub struct Cycle<R> {
     judge: Judge,
     actions: Vec<Twist>,
     observation: Observation,
-    index: u64,
+    /// Steps that were done.
+    steps: u64,
     since_recovery: u64,
+    /// What the judge's delayed rules have built up.
+    potential: f64,
 }
 
 impl<R: Robot> Cycle<R> {
@@ -62,38 +32,49 @@ impl<R: Robot> Cycle<R> {
     /// # Errors
     /// If the plan's filters, grid or script do not work, or a sensor fails.
     pub fn new(plan: &Plan, robot: R) -> Result<Self> {
-        Self::with_eyes(plan, robot, Vec::new())
+        Self::with_eyes(plan, robot, plan.eyes()?, Vec::new())
     }
 
-    /// The same for policies that perceive in other ways than the script: one more state for each of `others`.
+    /// A cycle whose states come from another map than the plan's grid.
     ///
     /// # Errors
     /// As [`Cycle::new`].
-    pub fn with_eyes(plan: &Plan, robot: R, mut others: Vec<Eyes>) -> Result<Self> {
+    pub fn with_map(plan: &Plan, robot: R, map: Box<dyn StateMap>) -> Result<Self> {
+        Self::with_eyes(plan, robot, Eyes { map, ..plan.eyes()? }, Vec::new())
+    }
+
+    /// A cycle that looks through its own eyes, by which the script judges too, and through those of others: one more state
+    /// for each of them.
+    ///
+    /// # Errors
+    /// As [`Cycle::new`].
+    pub fn with_eyes(plan: &Plan, robot: R, own: Eyes, mut others: Vec<Eyes>) -> Result<Self> {
         let settings = &plan.settings;
-        others.insert(0, Eyes::new(plan.chain()?, plan.grid()?));
+        others.insert(0, own);
         let format =
             if others.iter().all(|eyes| eyes.chain.likes() == Format::Grey) { Format::Grey } else { Format::Rgb };
-        let observation = Observation {
-            image: Image::of(format, settings.camera.width_px as usize, settings.camera.height_px as usize),
-            scan: Scan { ranges_m: vec![0.0; settings.laser.beams as usize] },
-            contact: false,
-            fallen: false,
-            odometry: Twist::default(),
-        };
+        let (width_px, height_px) = (settings.camera.width_px as usize, settings.camera.height_px as usize);
         let mut cycle = Self {
             robot,
             states: vec![0; others.len()],
             eyes: others,
             judge: plan.judge()?,
             actions: settings.actions.clone(),
-            observation,
-            index: 0,
+            observation: Observation::asking_for(format, width_px, height_px, settings.laser.beams as usize),
+            steps: 0,
             since_recovery: 0,
+            potential: 0.0,
         };
         cycle.perceive()?;
         cycle.calibrate()?;
         Ok(cycle)
+    }
+
+    /// From the next observation on the image is asked for in another format: in colour, for whoever wants to look at it
+    /// though the filters look at brightness alone. States and rewards stay the same.
+    pub fn ask_for(&mut self, format: Format) {
+        let Image { width_px, height_px, .. } = self.observation.image;
+        self.observation.image = Image::of(format, width_px, height_px);
     }
 
     /// From the next step on another script judges; it is calibrated on the present observation, as at the start of a run.
@@ -102,11 +83,12 @@ impl<R: Robot> Cycle<R> {
     /// If the script fails.
     pub fn swap_judge(&mut self, plan: &Plan) -> Result<()> {
         self.judge = plan.judge()?;
+        self.potential = 0.0;
         self.calibrate()
     }
 
     fn calibrate(&mut self) -> Result<()> {
-        self.fill_facts(0);
+        self.fill_facts(0, self.steps);
         self.judge.calibrate()
     }
 
@@ -122,24 +104,34 @@ impl<R: Robot> Cycle<R> {
         &self.states
     }
 
+    /// Steps that were done.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
     /// Carries out an action and judges what came of it.
     ///
     /// # Errors
     /// If a sensor, a filter or the script fails; the message names the step.
     pub fn step(&mut self, action: usize) -> Result<Step> {
-        let (index, state) = (self.index, self.state());
+        let (index, state, potential) = (self.steps, self.state(), self.potential);
         self.robot.act(self.actions[action])?;
-        self.index += 1;
         self.since_recovery += 1;
         self.perceive()?;
-        self.fill_facts(action);
+        self.fill_facts(action, index + 1);
         let verdict = self.judge.judge().map_err(|error| at_step(error, index))?;
+        self.steps += 1;
+        self.potential = self.judge.potential();
         Ok(Step {
             index,
             state,
             action,
+            explored: false,
             reward: verdict.reward,
             next_state: self.state(),
+            potential,
+            next_potential: self.potential,
             recover: verdict.recover,
             contact: self.observation.contact,
         })
@@ -152,6 +144,7 @@ impl<R: Robot> Cycle<R> {
     pub fn recover(&mut self) -> Result<()> {
         self.robot.recover()?;
         self.judge.recovered();
+        self.potential = 0.0;
         self.since_recovery = 0;
         self.perceive()
     }
@@ -165,7 +158,7 @@ impl<R: Robot> Cycle<R> {
         Ok(())
     }
 
-    fn fill_facts(&mut self, action: usize) {
+    fn fill_facts(&mut self, action: usize, step: u64) {
         let grid = &self.eyes[0].grid;
         let facts = self.judge.facts_mut();
         let twist = self.actions[action];
@@ -185,7 +178,7 @@ impl<R: Robot> Cycle<R> {
         facts.fallen = self.observation.fallen;
         facts.linear = self.observation.odometry.linear_m_per_s;
         facts.angular = self.observation.odometry.angular_rad_per_s;
-        facts.step = self.index;
+        facts.step = step;
         facts.since_recovery = self.since_recovery;
     }
 
@@ -234,6 +227,12 @@ impl<R: Robot> Cycle<R> {
     /// What each of the script's own filters made of the last image, in order.
     pub fn stages(&self) -> impl Iterator<Item = (&'static Descriptor, &[u8])> {
         self.eyes[0].chain.stages()
+    }
+
+    /// The map that makes the script's own states.
+    #[must_use]
+    pub fn state_map(&self) -> &dyn StateMap {
+        &*self.eyes[0].map
     }
 
     /// The script's own grid, with its last counts.

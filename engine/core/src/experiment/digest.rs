@@ -1,7 +1,11 @@
 //! A hash over everything that a run decided, to compare runs bit for bit.
 
-use super::Step;
+use std::ops::ControlFlow;
+
+use super::{Cycle, Observer, Step};
 use crate::geometry::Pose;
+use crate::learner::Learner;
+use crate::robot::Robot;
 use sha2::{Digest, Sha256};
 
 /// SHA-256 over every step (state, action, reward, failure, true pose) and the learned table.
@@ -11,7 +15,7 @@ pub(super) struct StateHash {
 }
 
 impl StateHash {
-    pub(super) fn step(&mut self, step: &Step, pose: Pose) {
+    fn step(&mut self, step: &Step, pose: Pose) {
         let mut record = [0_u8; 48];
         let fields = [
             (step.state as u64).to_le_bytes(),
@@ -27,12 +31,22 @@ impl StateHash {
         self.hasher.update(record);
     }
 
-    /// The hash as 64 hexadecimal digits, `values` of a learned table included.
-    pub(super) fn finish(mut self, values: &[f64]) -> String {
-        for value in values {
-            self.hasher.update(value.to_le_bytes());
-        }
+    /// The hash as 64 hexadecimal digits.
+    pub(super) fn finish(self) -> String {
         hex(&self.hasher.finalize())
+    }
+
+    /// The hash with the numbers that a learner has learned.
+    pub(super) fn finish_with(mut self, learner: &dyn Learner) -> String {
+        learner.numbers(&mut |value| self.hasher.update(value.to_le_bytes()));
+        self.finish()
+    }
+}
+
+impl<R: Robot> Observer<R> for StateHash {
+    fn stepped(&mut self, cycle: &Cycle<R>, step: &Step) -> ControlFlow<()> {
+        self.step(step, cycle.robot().whereabouts().unwrap_or_default().pose);
+        ControlFlow::Continue(())
     }
 }
 

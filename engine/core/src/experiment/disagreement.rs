@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Member, Plan};
+use super::Plan;
 use crate::learner::{Combined, Decision};
+use crate::settings::CombineWay;
 
 /// Most pairs of states for which memory is taken at the start.
 const RESERVED: usize = 1 << 16;
@@ -131,9 +132,9 @@ pub struct DisagreementFigures {
 }
 
 impl CombinationFigures {
-    pub(super) fn new(plan: &Plan, members: &[Member], counted: &Disagreements) -> Self {
-        let steps = counted.steps.max(1) as f64;
-        let by_sum = plan.settings.combine.way == "sum";
+    pub(super) fn new(plan: &Plan, counted: &Disagreements) -> Self {
+        let (members, steps) = (&plan.members, counted.steps.max(1) as f64);
+        let by_sum = plan.settings.combine.way == CombineWay::Sum;
         let policies = members.iter().zip(&counted.decided).map(|(member, decided)| MemberFigures {
             name: member.name.clone(),
             behaviour: member.behaviour.clone(),
@@ -152,7 +153,7 @@ impl CombinationFigures {
             won: row.won,
         });
         Self {
-            way: plan.settings.combine.way.clone(),
+            way: plan.settings.combine.way.word().to_owned(),
             policies: policies.collect(),
             disagree: counted.disagreeing as f64 / steps,
             disagreements: counted.rows.len(),

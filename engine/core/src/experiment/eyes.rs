@@ -1,21 +1,22 @@
-//! One way of perceiving: a filter chain and a grid over the camera's image.
+//! One way of perceiving: a filter chain, a grid over its mask, and a map from both to a state.
 
 use crate::diagnostic::Result;
 use crate::filter::Chain;
 use crate::sensors::observation::Image;
-use crate::state::Grid;
+use crate::state::{Grid, Percept, StateMap};
 
 /// What turns an image into a state.
 pub struct Eyes {
     pub(super) chain: Chain,
     pub(super) grid: Grid,
+    pub(super) map: Box<dyn StateMap>,
 }
 
 impl Eyes {
-    /// Eyes of a chain and a grid for images of the same size.
+    /// Eyes of a chain and a grid for images of the same size, and of the map that makes states of what they see.
     #[must_use]
-    pub fn new(chain: Chain, grid: Grid) -> Self {
-        Self { chain, grid }
+    pub fn new(chain: Chain, grid: Grid, map: Box<dyn StateMap>) -> Self {
+        Self { chain, grid, map }
     }
 
     /// The state of an image.
@@ -24,6 +25,7 @@ impl Eyes {
     /// If a filter fails.
     pub(super) fn perceive(&mut self, image: &Image) -> Result<usize> {
         let mask = self.chain.apply(image)?;
-        Ok(self.grid.encode(mask))
+        self.grid.encode(mask);
+        Ok(self.map.encode(Percept { image, mask, grid: &self.grid }))
     }
 }

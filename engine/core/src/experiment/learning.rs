@@ -1,17 +1,18 @@
-//! Learning: the whole method on one screen, [`Learning::run`].
+//! Learning: the loop with a learner in it, and all that is kept of it.
 
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::choosers::Learns;
 use super::digest::StateHash;
 use super::legs::with_gone;
 use super::trail::{Recorder, Trail};
-use super::{Cycle, Ledger, Plan, Tally, WINDOW_STEPS};
+use super::{Cycle, Ledger, Observer, Phase, Plan, Step, Tally, WINDOW_STEPS, drive};
 use crate::diagnostic::{Diagnostic, Result};
-use crate::learner::{Carry, Learner, Policy, Transition};
-use crate::random::{Random, Stream};
-use crate::robot::SimulatedRobot;
+use crate::learner::{Carry, Learner, Policy, TableLearner};
+use crate::robot::{Robot, SimulatedRobot};
 
-/// How far a seed has come, told at the end of every window.
+/// How far a seed has come, said at the end of every window.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Progress {
     /// Whose progress.
@@ -35,32 +36,45 @@ pub struct Learned {
     pub policy: Policy,
     /// The path of the first 400 steps.
     pub early: Trail,
-    /// Hash over every step and the table, 64 hexadecimal digits.
+    /// Hash over every step and what was learned, 64 hexadecimal digits.
     pub state_hash: String,
-    /// Why learning ended early, if a filter, a sensor or the script failed.
-    pub fault: Option<Box<Diagnostic>>,
 }
 
-impl Learned {
-    /// The same, if nothing failed.
-    ///
-    /// # Errors
-    /// The failure that ended learning early.
-    pub fn whole(mut self) -> Result<Self> {
-        self.fault.take().map_or(Ok(self), Err)
+/// Learning that a failure ended: the failure, and what was learned before it.
+#[derive(Debug, Clone)]
+pub struct BrokenOff {
+    /// Why it ended.
+    pub error: Box<Diagnostic>,
+    /// What was learned; nothing if the first step failed.
+    pub learned: Option<Learned>,
+}
+
+impl From<Box<BrokenOff>> for Box<Diagnostic> {
+    fn from(broken: Box<BrokenOff>) -> Self {
+        broken.error
     }
 }
 
-/// Learns a plan under a seed, until its steps are done, `stop` is set, or a sensor, a filter or the script fails: what was
-/// learned before is kept, and the failure with it.
+impl From<Box<Diagnostic>> for Box<BrokenOff> {
+    fn from(error: Box<Diagnostic>) -> Self {
+        Self::new(BrokenOff { error, learned: None })
+    }
+}
+
+/// Learns a plan under a seed, until its steps are done or `stop` is set.
 ///
 /// # Errors
-/// If it fails before the first step is done.
-pub fn learn(plan: &Plan, seed: u64, stop: &AtomicBool, report: &(dyn Fn(Progress) + Sync)) -> Result<Learned> {
+/// If a sensor, a filter or the script fails; what was learned before is in the error.
+pub fn learn(
+    plan: &Plan,
+    seed: u64,
+    stop: &AtomicBool,
+    report: &(dyn Fn(Progress) + Sync),
+) -> std::result::Result<Learned, Box<BrokenOff>> {
     learn_into(plan, seed, stop, report, &mut Ledger::off())
 }
 
-/// The same, with every step kept in a ledger.
+/// Learns, and keeps every step in a ledger.
 ///
 /// # Errors
 /// As [`learn`].
@@ -70,72 +84,92 @@ pub fn learn_into(
     stop: &AtomicBool,
     report: &(dyn Fn(Progress) + Sync),
     ledger: &mut Ledger,
-) -> Result<Learned> {
+) -> std::result::Result<Learned, Box<BrokenOff>> {
     let mut learning = Learning::new(plan.first_leg(), seed)?;
     learning.run(plan.first_steps(), stop, report, ledger)?;
     for (from, carry, leg, steps) in plan.swaps() {
-        if learning.steps < from {
+        if learning.steps() < from {
             break;
         }
         learning.swap(leg, carry, ledger)?;
         learning.run(steps, stop, report, ledger)?;
     }
-    Ok(learning.finish())
+    let learned = learning.finish();
+    match learning.fault {
+        Some(error) => Err(Box::new(BrokenOff { error, learned: Some(learned) })),
+        None => Ok(learned),
+    }
 }
 
 /// A robot that learns: for some steps, then for more, under the same reward or another.
-pub struct Learning {
+pub struct Learning<R = SimulatedRobot, L = TableLearner> {
     seed: u64,
-    cycle: Cycle<SimulatedRobot>,
-    learner: Learner,
-    failure_is_terminal: bool,
+    cycle: Cycle<R>,
+    learner: L,
     /// The names of the rules that the tally counts, of earlier legs too.
     rules: Vec<String>,
     tally: Tally,
     early: Recorder,
     hash: StateHash,
-    steps: u64,
     fault: Option<Box<Diagnostic>>,
 }
 
 impl Learning {
-    /// A robot at its start that knows nothing; earlier legs of the plan are not looked at.
+    /// A simulated robot at its start that knows nothing; earlier legs of the plan are not looked at.
     ///
     /// # Errors
     /// If the plan does not work.
     pub fn new(plan: &Plan, seed: u64) -> Result<Self> {
-        let settings = &plan.settings;
-        let robot = SimulatedRobot::new(&plan.layout, settings, seed)?;
-        let cycle = Cycle::new(plan, robot)?;
-        let random = Random::new(seed, Stream::Learner);
-        let mut learner = Learner::new(&settings.learner, cycle.grid().states(), settings.actions.len(), random);
-        if let Some(mirror) = plan.mirror()? {
-            learner = learner.with_mirror(&settings.learner, mirror);
-        }
-        Ok(Self {
+        let cycle = Cycle::new(plan, Phase::Learning.robot(plan, seed)?)?;
+        let learner = TableLearner::new(&plan.settings.learner, plan.task(cycle.state_map(), seed)?);
+        Ok(Self::with(plan, seed, cycle, learner))
+    }
+}
+
+impl<R: Robot, L: Learner> Learning<R, L> {
+    /// Any robot with any learner, as they are now. [`Plan::task`] says what the learner is made for.
+    #[must_use]
+    pub fn with(plan: &Plan, seed: u64, cycle: Cycle<R>, learner: L) -> Self {
+        Self {
             seed,
             learner,
-            failure_is_terminal: settings.learner.failure_is_terminal,
             rules: plan.own_rule_names().collect(),
-            tally: Tally::new(plan.behaviour.rules().len(), settings.run.steps),
-            early: Recorder::new(WINDOW_STEPS, cycle.robot().world()),
+            tally: Tally::new(plan.behaviour.rules().len(), plan.settings.run.steps),
+            early: Recorder::new(WINDOW_STEPS, cycle.robot()),
             hash: StateHash::default(),
             cycle,
-            steps: 0,
             fault: None,
-        })
+        }
     }
 
     /// Steps done, in all legs.
     #[must_use]
     pub fn steps(&self) -> u64 {
-        self.steps
+        self.cycle.steps()
+    }
+
+    /// What failed, if something has: nothing is learned after it.
+    #[must_use]
+    pub fn fault(&self) -> Option<&Diagnostic> {
+        self.fault.as_deref()
+    }
+
+    /// The robot that learns.
+    #[must_use]
+    pub fn cycle(&self) -> &Cycle<R> {
+        &self.cycle
+    }
+
+    /// What learns.
+    #[must_use]
+    pub fn learner(&self) -> &L {
+        &self.learner
     }
 
     /// Learns for so many more steps, or until `stop` is set at the end of a window, or something fails.
     ///
     /// # Errors
-    /// What failed, if it was the first step; a later failure is told by [`Learning::finish`].
+    /// What failed, if it was the first step; a later failure is kept, see [`Learning::fault`].
     pub fn run(
         &mut self,
         steps: u64,
@@ -143,51 +177,24 @@ impl Learning {
         report: &(dyn Fn(Progress) + Sync),
         ledger: &mut Ledger,
     ) -> Result<()> {
-        let Self { cycle, learner, tally, early, hash, .. } = self;
-        let until = if self.fault.is_some() { self.steps } else { self.steps.saturating_add(steps) };
-        while self.steps < until {
-            let action = learner.choose(cycle.state());
-            let explored = learner.table().best(cycle.state()).0 != action;
-            let step = match cycle.step(action) {
-                Ok(step) => step,
-                Err(error) if self.steps == 0 => return Err(error),
-                Err(error) => {
-                    self.fault = Some(error);
-                    break;
-                }
-            };
-            learner.learn(&Transition {
-                state: step.state,
-                action: step.action,
-                reward: step.reward,
-                next_state: step.next_state,
-                terminal: step.recover && self.failure_is_terminal,
-            });
-            self.steps += 1;
-            ledger.add(cycle, &step, explored);
-            hash.step(&step, cycle.robot().world().body().pose);
-            early.follow(cycle.robot().world(), step.failed());
-            if step.recover {
-                learner.forget();
-                self.fault = cycle.recover().err();
-                if self.fault.is_some() {
-                    break;
-                }
-                early.jump(cycle.robot().world());
-            }
-            if tally.count(&step, cycle.fired()) {
-                let reinforcement = tally.windows.last().map_or(0.0, |window| window.reinforcement);
-                report(Progress { seed: self.seed, steps: self.steps, reinforcement });
-                if stop.load(Ordering::Relaxed) {
-                    break;
-                }
+        if self.fault.is_some() {
+            return Ok(());
+        }
+        let Self { seed, cycle, learner, tally, early, hash, .. } = self;
+        let windows = Windows { seed: *seed, tally, stop, report };
+        let mut observers = (ledger, (hash, (early, windows)));
+        match drive(cycle, &mut Learns(learner), &mut observers, steps) {
+            Ok(_) => Ok(()),
+            Err(error) if cycle.steps() == 0 => Err(error),
+            Err(error) => {
+                self.fault = Some(error);
+                Ok(())
             }
         }
-        Ok(())
     }
 
     /// Goes on under the reward and the learner's settings of another plan, which differs in nothing else: from where the
-    /// robot is, the table as `carry` says. Nothing happens after a failure.
+    /// robot is, what was learned as `carry` says. Nothing happens after a failure.
     ///
     /// # Errors
     /// If the new script fails on what the robot sees.
@@ -196,8 +203,7 @@ impl Learning {
             return Ok(());
         }
         let settings = &plan.settings;
-        self.learner.swap_reward(&settings.learner, plan.mirror()?, carry);
-        self.failure_is_terminal = settings.learner.failure_is_terminal;
+        self.learner.swap(&settings.learner, plan.mirror(self.cycle.state_map())?, carry);
         self.cycle.swap_judge(plan)?;
         let rules = with_gone(plan.own_rule_names().collect(), self.rules.iter().cloned());
         self.tally.swap_rules(&self.rules, &rules, settings.run.steps);
@@ -211,12 +217,11 @@ impl Learning {
     pub fn snapshot(&self) -> Learned {
         Learned {
             seed: self.seed,
-            steps: self.steps,
+            steps: self.steps(),
             tally: self.tally.clone(),
             policy: self.learner.policy(),
             early: self.early.clone().finish(),
-            state_hash: self.hash.clone().finish(self.learner.table().values()),
-            fault: self.fault.clone(),
+            state_hash: self.hash.clone().finish_with(&self.learner),
         }
     }
 
@@ -225,5 +230,24 @@ impl Learning {
     pub fn finish(&mut self) -> Learned {
         self.learner.forget();
         self.snapshot()
+    }
+}
+
+/// Counts, and at the end of every window reports and looks whether to stop.
+struct Windows<'a> {
+    seed: u64,
+    tally: &'a mut Tally,
+    stop: &'a AtomicBool,
+    report: &'a (dyn Fn(Progress) + Sync),
+}
+
+impl<R: Robot> Observer<R> for Windows<'_> {
+    fn stepped(&mut self, cycle: &Cycle<R>, step: &Step) -> ControlFlow<()> {
+        if !self.tally.count(step, cycle.fired()) {
+            return ControlFlow::Continue(());
+        }
+        let reinforcement = self.tally.windows.last().map_or(0.0, |window| window.reinforcement);
+        (self.report)(Progress { seed: self.seed, steps: cycle.steps(), reinforcement });
+        if self.stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }

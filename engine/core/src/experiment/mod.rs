@@ -3,10 +3,12 @@
 //! Nothing here prints, reads a clock or writes a file.
 
 mod certainty;
+mod choosers;
 mod combination;
 mod cycle;
 mod digest;
 mod disagreement;
+mod drive;
 mod eyes;
 mod learning;
 mod ledger;
@@ -17,7 +19,11 @@ mod plan;
 mod playback;
 mod reasons;
 mod rescore;
+mod run_log;
+mod seed_run;
 mod seeds;
+mod snapshot;
+mod step;
 mod summary;
 mod tally;
 mod testing;
@@ -25,22 +31,26 @@ mod trail;
 mod truth;
 
 pub use certainty::CertaintyGrid;
+pub use choosers::{ByState, Frozen, Learns, Recorded, Together};
 pub use combination::Member;
-pub use cycle::{Cycle, Step};
+pub use cycle::Cycle;
 pub use disagreement::{CombinationFigures, Disagreement, DisagreementFigures, Disagreements, MemberFigures};
+pub use drive::{Choice, Chooser, Each, Observer, drive};
 pub use eyes::Eyes;
-pub use learning::{Learned, Learning, Progress, learn, learn_into};
+pub use learning::{BrokenOff, Learned, Learning, Progress, learn, learn_into};
 pub use ledger::{Ledger, LedgerLeg, MOST_STEPS, Record, RecordShape};
 pub use legs::Leg;
 pub use plan::{Overrides, Plan};
 pub use playback::{Phase, Playback};
 pub use reasons::{FactReasons, PartReasons, RuleReasons, StateCells, StepReasons, beam_angle_deg};
 pub use rescore::{Rescored, RuleChange, RuleScore, plan_with_rules_of, rescore};
+pub use run_log::{CHUNK_STEPS, DIGEST_BYTES, RunLog, chained};
+pub use seed_run::{SeedRun, run_seed};
 pub use seeds::in_parallel;
+pub use snapshot::Snapshot;
+pub use step::Step;
 pub use summary::{RuleTotal, Spread, Summary, TestFigures, learned_at};
 pub use tally::{Tally, WINDOW_STEPS, Window};
-pub use testing::{
-    CombinedRun, Snapshot, TestRun, Watch, test, test_and_watch, test_choices, test_combined, test_into,
-};
+pub use testing::{CombinationTest, Decider, TestRun, frozen, test, test_and_watch, test_choices, test_robot};
 pub use trail::Trail;
 pub use truth::{Spells, Truth};

@@ -7,7 +7,7 @@ use crate::geometry::Twist;
 use crate::learner::Mirror;
 use crate::reward::{Behaviour, Judge, Unread};
 use crate::settings::Settings;
-use crate::state::Grid;
+use crate::state::{Grid, GridMap, StateMap};
 
 /// A behaviour with its settings and the filters that it may use.
 pub(super) struct Parts<'a> {
@@ -29,7 +29,7 @@ impl Parts<'_> {
             mistakes.take(self.judge());
         }
         if grid && !unread.any_of("actions") && !unread.any_of("learner") {
-            mistakes.take(self.mirror());
+            mistakes.take(self.grid().and_then(|grid| self.mirror(&GridMap::new(&self.settings.grid, grid))));
         }
         chain && grid && !unread.any_of("camera")
     }
@@ -68,12 +68,16 @@ impl Parts<'_> {
     }
 
     /// The mirror that `learner.mirror` asks for.
-    pub(super) fn mirror(&self) -> Result<Option<Mirror>> {
+    pub(super) fn mirror(&self, map: &dyn StateMap) -> Result<Option<Mirror>> {
         if !self.settings.learner.mirror {
             return Ok(None);
         }
-        let grid = self.grid()?;
-        let states = (0..grid.states()).map(|state| grid.mirrored(state)).collect();
+        let states = (0..map.states()).map(|state| map.mirrored(state)).collect::<Option<Vec<_>>>();
+        let Some(states) = states else {
+            let error = Diagnostic::new("E-MIRROR", "the states of this behaviour have no mirror images");
+            let help = Some("leave 'mirror' out".to_owned());
+            return Err(self.point(error, "learner.mirror", "asks for mirrored learning", help));
+        };
         Mirror::new(states, &self.settings.actions).map(Some).map_err(|index| {
             let Twist { linear_m_per_s: linear, angular_rad_per_s: angular } = self.settings.actions[index];
             let message =

@@ -4,14 +4,15 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::parts::Parts;
-use super::{Leg, outlook};
+use super::{Eyes, Leg, Member, outlook};
 use crate::diagnostic::{Diagnostic, Mistakes, Result, nearest_name, printable};
 use crate::filter::{Catalogue, Chain};
-use crate::learner::Mirror;
+use crate::learner::{Mirror, Task};
+use crate::random::{Random, Stream};
 use crate::reward::{Behaviour, Draft, Judge, Unread};
 use crate::robot::SimulatedRobot;
 use crate::settings::{SETTINGS, Settings, Value, apply};
-use crate::state::Grid;
+use crate::state::{Grid, GridMap, StateMap};
 use crate::world::Layout;
 
 /// What the command line changes.
@@ -36,6 +37,8 @@ pub struct Plan {
     pub settings: Settings,
     /// The world.
     pub layout: Arc<Layout>,
+    /// The policies that its script combines, once they are loaded; none of a behaviour that learns.
+    pub members: Vec<Member>,
     /// The filters that its chain may use.
     pub filters: Arc<Catalogue>,
     /// What is learned under other rewards first; none unless the reward was swapped while the robot learned.
@@ -108,7 +111,8 @@ impl Plan {
             Some(world) => Arc::new(Layout::load(&find_world(&self.behaviour, world, None)?)?),
             None => self.layout,
         };
-        Ok(Self::with_layout(self.behaviour, settings, layout, self.filters)?.after(self.earlier))
+        let plan = Self::with_layout(self.behaviour, settings, layout, self.filters)?;
+        Ok(plan.with_members(self.members).after(self.earlier))
     }
 
     /// A plan from parts that were resolved before.
@@ -140,7 +144,7 @@ impl Plan {
             let unknown = Diagnostic::new("E-WORLD-FILE", "the script does not say which world");
             return mistakes.end().and(Err(Box::new(unknown)));
         };
-        let plan = Self { behaviour, settings, layout, filters, earlier: Vec::new() };
+        let plan = Self { behaviour, settings, layout, members: Vec::new(), filters, earlier: Vec::new() };
         if !unread.any_of("laser") {
             plan.behaviour.find_unreachable(&plan.settings.laser, plan.layout.level_height_m(), &mut mistakes);
         }
@@ -174,12 +178,54 @@ impl Plan {
         self.parts().grid()
     }
 
-    /// The mirror that `learner.mirror` asks for.
+    /// A fresh map from the grid to states.
     ///
     /// # Errors
-    /// If an action has no counterpart that turns the other way.
-    pub fn mirror(&self) -> Result<Option<Mirror>> {
-        self.parts().mirror()
+    /// As [`Plan::grid`].
+    pub fn state_map(&self) -> Result<Box<dyn StateMap>> {
+        Ok(Box::new(GridMap::new(&self.settings.grid, self.grid()?)))
+    }
+
+    /// Fresh eyes: chain, grid and state map.
+    ///
+    /// # Errors
+    /// As [`Plan::chain`] and [`Plan::grid`].
+    pub fn eyes(&self) -> Result<Eyes> {
+        Ok(Eyes::new(self.chain()?, self.grid()?, self.state_map()?))
+    }
+
+    /// The mirror that `learner.mirror` asks for, over the states of a map.
+    ///
+    /// # Errors
+    /// If an action has no counterpart that turns the other way, or the map has no sides.
+    pub fn mirror(&self, map: &dyn StateMap) -> Result<Option<Mirror>> {
+        self.parts().mirror(map)
+    }
+
+    /// What a learner is made for: the states of a map, the plan's actions, and the stream of a seed.
+    ///
+    /// # Errors
+    /// As [`Plan::mirror`].
+    pub fn task(&self, map: &dyn StateMap, seed: u64) -> Result<Task> {
+        Ok(Task {
+            digits: map.digits(),
+            states: map.states(),
+            actions: self.settings.actions.clone(),
+            mirror: self.mirror(map)?,
+            random: Random::new(seed, Stream::Learner),
+        })
+    }
+
+    /// Whether the behaviour learns; if not, it combines policies that were learned before.
+    #[must_use]
+    pub fn learns(&self) -> bool {
+        self.settings.policies.is_empty()
+    }
+
+    /// The plan with the policies that its script combines.
+    #[must_use]
+    pub fn with_members(self, members: Vec<Member>) -> Self {
+        Self { members, ..self }
     }
 
     /// A fresh judge.

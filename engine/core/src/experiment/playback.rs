@@ -11,10 +11,13 @@
 //!
 //! A step takes as long as one of learning, about 8 microseconds; going back plays from the beginning.
 
-use super::testing::TEST_SEED_OFFSET;
-use super::{Cycle, Ledger, Plan, Step};
+use super::drive::{advance, recover};
+use super::{Choice, Cycle, Ledger, Plan, Recorded, Step};
 use crate::diagnostic::{Diagnostic, Result};
-use crate::robot::SimulatedRobot;
+use crate::robot::{Robot, SimulatedRobot};
+
+/// Added to the seed, so that the noise of the test is not the noise of learning again.
+const TEST_SEED_OFFSET: u64 = 0x5eed_0000_0000_0000;
 
 /// What a ledger holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,23 +29,27 @@ pub enum Phase {
 }
 
 impl Phase {
-    /// The seed of world and sensors in this phase of a run.
-    #[must_use]
-    pub const fn world_seed(self, seed: u64) -> u64 {
-        match self {
+    /// The simulated robot that this phase of a run begins with.
+    ///
+    /// # Errors
+    /// If no start is safe, or the camera shows nothing from there.
+    pub fn robot(self, plan: &Plan, seed: u64) -> Result<SimulatedRobot> {
+        let seed = match self {
             Self::Learning => seed,
             Self::Test => seed.wrapping_add(TEST_SEED_OFFSET),
-        }
+        };
+        SimulatedRobot::new(&plan.layout, &plan.settings, seed)
     }
 }
 
 /// A recorded phase, driven again.
-pub struct Playback<'a> {
+pub struct Playback<'a, R = SimulatedRobot> {
     plan: &'a Plan,
     phase: Phase,
     ledger: &'a Ledger,
-    world_seed: u64,
-    cycle: Cycle<SimulatedRobot>,
+    /// Makes the robot as it was before the first step.
+    robots: Box<dyn Fn() -> Result<R> + Send + 'a>,
+    cycle: Cycle<R>,
     /// How many of the plan's swaps were done.
     swapped: usize,
     /// The record of the last step as it came out now.
@@ -52,18 +59,39 @@ pub struct Playback<'a> {
 }
 
 impl<'a> Playback<'a> {
-    /// Stands before the first step of a recorded phase.
+    /// Stands before the first step of a recorded phase in the simulator.
     ///
     /// # Errors
     /// If the plan does not work.
     pub fn new(plan: &'a Plan, seed: u64, phase: Phase, ledger: &'a Ledger) -> Result<Self> {
-        Self::new_phase(plan, phase.world_seed(seed), phase, ledger)
+        Self::with_robots(plan, phase, ledger, move || phase.robot(plan, seed))
+    }
+}
+
+impl<'a, R: Robot> Playback<'a, R> {
+    /// Stands before the first step of a recorded phase of any robot; `robots` puts it where it began.
+    ///
+    /// # Errors
+    /// If the plan or the robot does not work.
+    pub fn with_robots(
+        plan: &'a Plan,
+        phase: Phase,
+        ledger: &'a Ledger,
+        robots: impl Fn() -> Result<R> + Send + 'a,
+    ) -> Result<Self> {
+        let first = if phase == Phase::Learning { plan.first_leg() } else { plan };
+        let (cycle, played) = (Cycle::new(first, robots()?)?, Ledger::new(first, 1));
+        let robots = Box::new(robots);
+        Ok(Self { plan, phase, ledger, robots, cycle, swapped: 0, played, done: 0, must_recover: false })
     }
 
-    fn new_phase(plan: &'a Plan, world_seed: u64, phase: Phase, ledger: &'a Ledger) -> Result<Self> {
-        let first = if phase == Phase::Learning { plan.first_leg() } else { plan };
-        let (cycle, played) = (cycle(first, world_seed)?, Ledger::new(first, 1));
-        Ok(Self { plan, phase, ledger, world_seed, cycle, swapped: 0, played, done: 0, must_recover: false })
+    /// Stands before the first step again.
+    fn rewind(&mut self) -> Result<()> {
+        let first = if self.phase == Phase::Learning { self.plan.first_leg() } else { self.plan };
+        self.cycle = Cycle::new(first, (self.robots)()?)?;
+        self.played = Ledger::new(first, 1);
+        (self.swapped, self.done, self.must_recover) = (0, 0, false);
+        Ok(())
     }
 
     /// How many steps have been played.
@@ -74,7 +102,7 @@ impl<'a> Playback<'a> {
 
     /// The robot with its sensors, filters, grid and script, as they are now.
     #[must_use]
-    pub fn cycle(&self) -> &Cycle<SimulatedRobot> {
+    pub fn cycle(&self) -> &Cycle<R> {
         &self.cycle
     }
 
@@ -99,7 +127,7 @@ impl<'a> Playback<'a> {
     /// If a sensor, a filter or the script fails, or there are fewer steps.
     pub fn seek(&mut self, step: usize) -> Result<()> {
         if step < self.done {
-            *self = Self::new_phase(self.plan, self.world_seed, self.phase, self.ledger)?;
+            self.rewind()?;
         }
         while self.done < step {
             if self.advance()?.is_none() {
@@ -124,9 +152,9 @@ impl<'a> Playback<'a> {
             let message = format!("step {} of the log has action {action}, which the run does not have", self.done);
             return Diagnostic::new("E-LOG-FILE", message).help("run the behaviour again").fail();
         }
-        let step = self.cycle.step(action)?;
         self.played.clear();
-        self.played.add(&self.cycle, &step, record.explored);
+        let mut recorded = Recorded(Choice { action, explored: record.explored });
+        let (step, _) = advance(&mut self.cycle, &mut recorded, &mut self.played)?;
         self.done += 1;
         self.must_recover = step.recover;
         Ok(Some(step))
@@ -142,7 +170,7 @@ impl<'a> Playback<'a> {
     /// What comes between two steps: recovery, then the swap of the reward.
     fn make_ready(&mut self) -> Result<()> {
         if std::mem::take(&mut self.must_recover) {
-            self.cycle.recover()?;
+            recover(&mut self.cycle, &mut Recorded(Choice { action: 0, explored: false }), &mut ())?;
         }
         let plan = self.plan;
         if self.phase == Phase::Test || self.swapped == plan.earlier.len() {
@@ -155,8 +183,4 @@ impl<'a> Playback<'a> {
         }
         Ok(())
     }
-}
-
-fn cycle(plan: &Plan, world_seed: u64) -> Result<Cycle<SimulatedRobot>> {
-    Cycle::new(plan, SimulatedRobot::new(&plan.layout, &plan.settings, world_seed)?)
 }

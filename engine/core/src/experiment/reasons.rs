@@ -105,7 +105,10 @@ impl StepReasons {
         let (Some(step), Some(record)) = (playback.advance()?, ledger.record(index)) else { return Ok(None) };
         let plan = playback.plan();
         let (cycle, twist) = (playback.cycle(), plan.settings.actions[step.action]);
-        let cells = |state: usize| StateCells { index: state, cells: cycle.grid().cells(state) };
+        let cells = |state: usize| StateCells {
+            index: state,
+            cells: cycle.state_map().describe(state).cells.map_or_else(Vec::new, |cells| cells.filled),
+        };
         let stopped_by = cycle.fired().iter().rposition(Option::is_some).filter(|_| step.recover);
         let rules = plan.behaviour.rules().iter().enumerate();
         let rules = rules.map(|(rule, text)| RuleReasons {

@@ -11,10 +11,9 @@ use std::sync::Arc;
 use super::legs::first_fixed_difference;
 use super::{Ledger, Phase, Plan, Playback};
 use crate::diagnostic::{Diagnostic, Result, printable};
-use crate::learner::{Learner, Policy, Transition};
-use crate::random::{Random, Stream};
+use crate::learner::{Ending, Learner, Policy, TableLearner, Transition};
 use crate::reward::Behaviour;
-use crate::settings::{SETTINGS, apply};
+use crate::settings::{LearnerKind, SETTINGS, apply};
 
 /// What the rules said in one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -190,14 +189,10 @@ fn rule_changes(old: &Plan, new: &Plan, scores: &[Vec<RuleScore>; 2]) -> Vec<Rul
 fn learn_along(plan: &Plan, seed: u64, ledger: &Ledger, judged: &[Judged], passes: u64) -> Result<Policy> {
     let mut settings = plan.settings.learner.clone();
     if passes > 1 {
-        "q".clone_into(&mut settings.kind);
+        settings.kind = LearnerKind::Q;
         settings.replay = 0;
     }
-    let random = Random::new(seed, Stream::Learner);
-    let mut learner = Learner::new(&settings, plan.grid()?.states(), plan.settings.actions.len(), random);
-    if let Some(mirror) = plan.mirror()? {
-        learner = learner.with_mirror(&settings, mirror);
-    }
+    let mut learner = TableLearner::new(&settings, plan.task(&*plan.state_map()?, seed)?);
     for _ in 0..passes {
         for (record, judged) in ledger.records().zip(judged) {
             learner.visit(record.state as usize);
@@ -206,7 +201,9 @@ fn learn_along(plan: &Plan, seed: u64, ledger: &Ledger, judged: &[Judged], passe
                 action: usize::from(record.action),
                 reward: judged.reward,
                 next_state: record.next_state as usize,
-                terminal: judged.recover && settings.failure_is_terminal,
+                ending: Ending::of(judged.recover, judged.reward),
+                potential: 0.0,
+                next_potential: 0.0,
             });
             // What follows does not follow from this step if the robot was put elsewhere.
             if judged.recover || judged.moved {
@@ -220,7 +217,7 @@ fn learn_along(plan: &Plan, seed: u64, ledger: &Ledger, judged: &[Judged], passe
 
 fn tries(plan: &Plan, ledger: &Ledger) -> Result<Vec<u64>> {
     let actions = plan.settings.actions.len();
-    let mut tries = vec![0; plan.grid()?.states() * actions];
+    let mut tries = vec![0; plan.state_map()?.states() * actions];
     for record in ledger.records() {
         if let Some(count) = tries.get_mut(record.state as usize * actions + usize::from(record.action)) {
             *count += 1;

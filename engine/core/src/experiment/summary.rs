@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::truth::Truth;
-use super::{CombinationFigures, CombinedRun, Learned, Member, Plan, Tally, WINDOW_STEPS};
+use super::truth::{Spells, Truth};
+use super::{CombinationFigures, Learned, Plan, Tally, TestRun, WINDOW_STEPS};
 
 /// Reinforcement of a window from which it counts as learned.
 const GOOD_WINDOW: f64 = -1.0;
@@ -70,7 +70,7 @@ pub struct TestFigures {
     pub failures: u64,
     /// Steps in which it asked for recovery after a reward above 0: goals reached.
     pub goals: u64,
-    /// The same for 1,000 steps.
+    /// Failures for 1,000 steps.
     pub failures_per_1000: f64,
     /// Sum of the rewards for 1,000 steps.
     pub reinforcement_per_1000: f64,
@@ -78,7 +78,7 @@ pub struct TestFigures {
     pub distance_m: f64,
     /// Signed progress along the world's lap route, metres; null without one.
     pub net_route_m: Option<f64>,
-    /// The same in laps.
+    /// That progress in lengths of the route.
     pub laps: Option<f64>,
     /// Steps in which the body touched something.
     pub contacts: u64,
@@ -100,75 +100,72 @@ pub struct TestFigures {
 }
 
 impl TestFigures {
-    pub(super) fn new(steps: u64, period_s: f64, lap_m: Option<f64>, tally: &Tally, truth: &Truth) -> Self {
-        let seconds = (steps as f64 * period_s).max(f64::MIN_POSITIVE);
+    /// What was counted, and what the truth says; a robot that does not know where it is has gone nowhere.
+    pub(super) fn new(plan: &Plan, steps: u64, tally: &Tally, truth: Option<&Truth>) -> Self {
+        let seconds = (steps as f64 * plan.settings.run.period_s).max(f64::MIN_POSITIVE);
+        let lap_m = plan.layout.lap.map(|lap| plan.layout.routes[lap].length_m());
         let per_1000 = |count: f64| count * 1000.0 / steps.max(1) as f64;
-        let share = |count: u64| count as f64 / truth.spells.all.max(1) as f64;
-        let net_route_m = truth.net_m();
+        let spells = truth.map_or_else(Spells::default, |truth| truth.spells);
+        let share = |count: u64| count as f64 / spells.all.max(1) as f64;
+        let net_route_m = truth.and_then(Truth::net_m);
+        let distance_m = truth.map_or(0.0, |truth| truth.distance_m);
+        let prey_m = truth.map_or(&[][..], |truth| &truth.prey_m);
         Self {
             steps,
             failures: tally.failures,
             goals: tally.goals,
             failures_per_1000: per_1000(tally.failures as f64),
             reinforcement_per_1000: per_1000(tally.curve().iter().sum()),
-            distance_m: truth.distance_m,
+            distance_m,
             net_route_m,
             laps: net_route_m.zip(lap_m).map(|(net_m, lap_m)| net_m / lap_m),
             contacts: tally.contacts,
-            mean_speed: truth.distance_m / seconds,
-            spinning: share(truth.spells.spinning),
-            standing: share(truth.spells.standing),
-            circling: share(truth.spells.circling),
-            backwards: net_route_m.map(|_| share(truth.spells.backwards)),
-            prey_distance_m: median(&truth.prey_m.iter().map(|distance| f64::from(*distance)).collect::<Vec<_>>()),
+            mean_speed: distance_m / seconds,
+            spinning: share(spells.spinning),
+            standing: share(spells.standing),
+            circling: share(spells.circling),
+            backwards: net_route_m.map(|_| share(spells.backwards)),
+            prey_distance_m: median(&prey_m.iter().map(|distance| f64::from(*distance)).collect::<Vec<_>>()),
             does_task: net_route_m.map(|net_m| net_m.abs() / seconds >= TASK_SPEED_M_PER_S),
         }
     }
 }
 
 impl Summary {
-    /// The figures of one seed.
+    /// The figures of one seed; nothing was learned by a behaviour that combines policies. The log's digest and how long
+    /// it took are not known here.
     #[must_use]
-    pub fn new(plan: &Plan, learned: &Learned, test: TestFigures, seconds: f64) -> Self {
-        let curve = learned.tally.curve();
-        Self {
-            behaviour: plan.behaviour.name().to_owned(),
-            world: plan.layout.name.clone(),
-            seed: learned.seed,
-            steps: learned.steps,
-            steps_per_second: ((learned.steps + test.steps) as f64 / seconds.max(1e-9)).round(),
-            learned_at: learned_at(&curve[..(learned.steps / WINDOW_STEPS) as usize]),
-            reinforcement_per_400: curve,
-            rules: rule_totals(plan, &learned.tally),
-            states_seen: learned.policy.rows().iter().flatten().count(),
-            interrupted: learned.steps < plan.learning_steps() || test.steps < plan.settings.run.test_steps,
-            state_hash: learned.state_hash.clone(),
-            log_sha256: None,
-            combination: None,
-            test,
-        }
-    }
-
-    /// The figures of a combination, which learns nothing.
-    #[must_use]
-    pub fn of_combination(plan: &Plan, members: &[Member], tested: &CombinedRun, seed: u64, seconds: f64) -> Self {
-        let test = tested.run.figures.clone();
+    pub fn new(plan: &Plan, seed: u64, learned: Option<&Learned>, tested: &TestRun) -> Self {
+        let test = tested.figures.clone();
+        let curve = learned.map_or_else(Vec::new, |learned| learned.tally.curve());
+        let steps = learned.map_or(0, |learned| learned.steps);
+        let (wanted, whole) = (if plan.learns() { plan.learning_steps() } else { 0 }, (steps / WINDOW_STEPS) as usize);
         Self {
             behaviour: plan.behaviour.name().to_owned(),
             world: plan.layout.name.clone(),
             seed,
-            steps: 0,
-            steps_per_second: (test.steps as f64 / seconds.max(1e-9)).round(),
-            learned_at: None,
-            reinforcement_per_400: Vec::new(),
-            rules: rule_totals(plan, &tested.run.tally),
-            states_seen: members.iter().map(|member| member.policy.rows().iter().flatten().count()).sum(),
-            interrupted: test.steps < plan.settings.run.test_steps,
-            state_hash: tested.run.state_hash.clone(),
+            steps,
+            steps_per_second: 0.0,
+            learned_at: learned_at(&curve[..whole]),
+            reinforcement_per_400: curve,
+            rules: rule_totals(plan, learned.map_or(&tested.tally, |learned| &learned.tally)),
+            states_seen: learned.map_or_else(
+                || plan.members.iter().map(|member| member.policy.states_met()).sum(),
+                |learned| learned.policy.states_met(),
+            ),
+            interrupted: steps < wanted || test.steps < plan.settings.run.test_steps,
+            state_hash: learned.map_or(&tested.state_hash, |learned| &learned.state_hash).clone(),
             log_sha256: None,
-            combination: Some(tested.figures.clone()),
+            combination: tested.combination.as_ref().map(|combination| combination.figures.clone()),
             test,
         }
+    }
+
+    /// The figures with how fast they were made: `seconds` of wall clock for all steps of learning and testing.
+    #[must_use]
+    pub fn timed(mut self, seconds: f64) -> Self {
+        self.steps_per_second = ((self.steps + self.test.steps) as f64 / seconds.max(1e-9)).round();
+        self
     }
 
     /// Whether it was learned and, in a world with a route, gets along it. A combination learns nothing: instead, it must

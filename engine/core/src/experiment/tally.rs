@@ -104,15 +104,7 @@ mod tests {
     #[test]
     fn a_window_holds_400_steps_and_sums_by_rule() {
         let mut tally = Tally::new(2, 401);
-        let step = |reward, failed| Step {
-            index: 0,
-            state: 0,
-            action: 0,
-            reward,
-            next_state: 0,
-            recover: failed,
-            contact: failed,
-        };
+        let step = |reward, failed| Step { reward, recover: failed, contact: failed, ..Step::default() };
         for index in 0..401 {
             let failed = index % 100 == 0;
             let fired = [failed.then_some(-1.0), None];
@@ -128,7 +120,7 @@ mod tests {
     fn swapped_rules_keep_the_counts_of_their_names_and_of_those_that_are_gone() {
         let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
         let mut tally = Tally::new(2, 2);
-        let step = Step { index: 0, state: 0, action: 0, reward: -1.5, next_state: 0, recover: true, contact: false };
+        let step = Step { reward: -1.5, recover: true, ..Step::default() };
         tally.count(&step, &[Some(-1.0), Some(-0.5)]);
         tally.swap_rules(&names(&["wall", "lost"]), &names(&["lost", "slow", "wall"]), 400);
         tally.count(&step, &[Some(-2.0), None]);

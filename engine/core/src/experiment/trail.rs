@@ -1,7 +1,10 @@
 //! The robot's path, kept for drawing.
 
+use std::ops::ControlFlow;
+
+use super::{Cycle, Observer, Step};
 use crate::geometry::Pose;
-use crate::world::World;
+use crate::robot::Robot;
 
 /// A path: legs between recoveries, and where it failed.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -21,37 +24,44 @@ pub(super) struct Recorder {
 
 impl Recorder {
     /// A trail of at most `steps` steps that begins where the robot is.
-    pub(super) fn new(steps: u64, world: &World) -> Self {
+    pub(super) fn new(steps: u64, robot: &impl Robot) -> Self {
         let mut leg = Vec::with_capacity(steps as usize + 1);
-        leg.push(point(world.body().pose));
+        leg.extend(place(robot));
         Self { trail: Trail { legs: vec![leg], failures: Vec::new() }, left: steps }
-    }
-
-    /// Adds the robot's place after a step.
-    pub(super) fn follow(&mut self, world: &World, failed: bool) {
-        if self.left == 0 {
-            return;
-        }
-        self.left -= 1;
-        let place = point(world.body().pose);
-        if let Some(leg) = self.trail.legs.last_mut() {
-            leg.push(place);
-        }
-        if failed {
-            self.trail.failures.push(place);
-        }
-    }
-
-    /// Begins a new leg where the robot was put.
-    pub(super) fn jump(&mut self, world: &World) {
-        if self.left > 0 {
-            self.trail.legs.push(vec![point(world.body().pose)]);
-        }
     }
 
     pub(super) fn finish(self) -> Trail {
         self.trail
     }
+}
+
+impl<R: Robot> Observer<R> for Recorder {
+    /// Adds the robot's place after a step.
+    fn stepped(&mut self, cycle: &Cycle<R>, step: &Step) -> ControlFlow<()> {
+        if self.left > 0
+            && let Some(place) = place(cycle.robot())
+        {
+            if let Some(leg) = self.trail.legs.last_mut() {
+                leg.push(place);
+            }
+            if step.failed() {
+                self.trail.failures.push(place);
+            }
+        }
+        self.left = self.left.saturating_sub(1);
+        ControlFlow::Continue(())
+    }
+
+    /// Begins a new leg where the robot was put.
+    fn recovered(&mut self, cycle: &Cycle<R>) {
+        if self.left > 0 {
+            self.trail.legs.push(place(cycle.robot()).into_iter().collect());
+        }
+    }
+}
+
+fn place(robot: &impl Robot) -> Option<[f32; 2]> {
+    robot.whereabouts().map(|here| point(here.pose))
 }
 
 fn point(pose: Pose) -> [f32; 2] {

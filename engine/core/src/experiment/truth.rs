@@ -1,9 +1,13 @@
 //! What a reward cannot see: where the robot really is, and whether it gets anywhere.
 
 use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+use std::sync::Arc;
 
+use super::{Cycle, Observer, Step};
 use crate::geometry::{Point2, Pose, wrap_angle};
-use crate::world::{Progress, World};
+use crate::robot::Robot;
+use crate::world::{Layout, Progress};
 
 /// Seconds over which spinning, standing and circling are judged.
 const SPELL_S: f64 = 20.0;
@@ -15,6 +19,7 @@ const STANDING_M: f64 = 0.2;
 /// Follows the true pose through a test.
 #[derive(Debug, Clone)]
 pub struct Truth {
+    layout: Arc<Layout>,
     progress: Option<Progress>,
     last: Pose,
     /// Length of the path, metres.
@@ -52,32 +57,36 @@ struct Spell {
 }
 
 impl Truth {
-    /// Begins at the robot's present pose.
+    /// Begins at the robot's present pose; `None` for a robot that does not know where it is.
     #[must_use]
-    pub fn new(world: &World, period_s: f64, steps: u64) -> Self {
-        let pose = world.body().pose;
-        let layout = world.layout();
+    pub fn new(robot: &impl Robot, layout: &Arc<Layout>, period_s: f64, steps: u64) -> Option<Self> {
+        let pose = robot.whereabouts()?.pose;
         let progress = layout.lap.map(|lap| Progress::new(&layout.routes[lap], Point2::new(pose.x_m, pose.y_m)));
-        let prey_m = Vec::with_capacity(if world.prey().is_some() { steps as usize } else { 0 });
+        let prey_m = Vec::with_capacity(if robot.prey().is_some() { steps as usize } else { 0 });
         let spell_steps = (SPELL_S / period_s).round().max(1.0) as u64;
-        let spell = Spell::new(pose, 0.0);
-        Self { progress, last: pose, distance_m: 0.0, spell, spell_steps, spells: Spells::default(), prey_m }
+        Some(Self {
+            layout: Arc::clone(layout),
+            progress,
+            last: pose,
+            distance_m: 0.0,
+            spell: Spell::new(pose, 0.0),
+            spell_steps,
+            spells: Spells::default(),
+            prey_m,
+        })
     }
 
-    /// Follows one step.
-    pub fn follow(&mut self, world: &World) {
-        let pose = world.body().pose;
+    fn follow(&mut self, pose: Pose, prey: Option<Pose>) {
         let moved = pose.distance_m(self.last);
         self.distance_m += moved;
         self.spell.path_m += moved;
         self.spell.turn_rad += wrap_angle(pose.yaw_rad - self.last.yaw_rad);
         self.spell.steps += 1;
         self.last = pose;
-        let layout = world.layout();
-        if let (Some(progress), Some(lap)) = (&mut self.progress, layout.lap) {
-            progress.update(&layout.routes[lap], Point2::new(pose.x_m, pose.y_m));
+        if let (Some(progress), Some(lap)) = (&mut self.progress, self.layout.lap) {
+            progress.update(&self.layout.routes[lap], Point2::new(pose.x_m, pose.y_m));
         }
-        if let Some(prey) = world.prey() {
+        if let Some(prey) = prey {
             self.prey_m.push(pose.distance_m(prey) as f32);
         }
         if self.spell.steps == self.spell_steps {
@@ -86,11 +95,9 @@ impl Truth {
     }
 
     /// The robot was put elsewhere: no progress is counted for that, and the spell begins anew.
-    pub fn jump(&mut self, world: &World) {
-        let pose = world.body().pose;
-        let layout = world.layout();
-        if let (Some(progress), Some(lap)) = (&mut self.progress, layout.lap) {
-            progress.jump(&layout.routes[lap], Point2::new(pose.x_m, pose.y_m));
+    fn jump(&mut self, pose: Pose) {
+        if let (Some(progress), Some(lap)) = (&mut self.progress, self.layout.lap) {
+            progress.jump(&self.layout.routes[lap], Point2::new(pose.x_m, pose.y_m));
         }
         self.last = pose;
         self.spell = Spell::new(pose, self.net_m().unwrap_or(0.0));
@@ -116,6 +123,21 @@ impl Truth {
         }
         self.spells.backwards += u64::from(net_m.is_some_and(|net_m| net_m < net_from_m));
         self.spell = Spell::new(self.last, net_m.unwrap_or(0.0));
+    }
+}
+
+impl<R: Robot> Observer<R> for Truth {
+    fn stepped(&mut self, cycle: &Cycle<R>, _: &Step) -> ControlFlow<()> {
+        if let Some(here) = cycle.robot().whereabouts() {
+            self.follow(here.pose, cycle.robot().prey());
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn recovered(&mut self, cycle: &Cycle<R>) {
+        if let Some(here) = cycle.robot().whereabouts() {
+            self.jump(here.pose);
+        }
     }
 }
 

@@ -1,11 +1,12 @@
-//! What a transition teaches: the one update that every way of learning shares.
+//! What a lesson teaches: the one update that every way of learning shares.
 
 use super::QTable;
 use super::traces::Traces;
+use crate::saved::{Loading, Saving, Unfit};
 
-/// One step, as the learner sees it.
+/// One step, as a table learns from it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Transition {
+pub struct Lesson {
     /// The state in which the action was chosen.
     pub state: usize,
     /// The action.
@@ -18,7 +19,7 @@ pub struct Transition {
     pub terminal: bool,
 }
 
-impl Transition {
+impl Lesson {
     /// The TD target: reward plus the discounted value of what follows.
     #[must_use]
     pub fn target(&self, discount: f64, next_value: f64) -> f64 {
@@ -29,9 +30,32 @@ impl Transition {
 /// A way of learning.
 pub trait Backup: Send {
     /// Changes the table by one step.
-    fn learn(&mut self, table: &mut QTable, transition: &Transition);
+    fn learn(&mut self, table: &mut QTable, lesson: &Lesson);
     /// Ends the memory of earlier steps, after learning what they still hold.
     fn forget(&mut self, table: &mut QTable);
+    /// Writes the memory of earlier steps.
+    fn save(&self, to: &mut Saving);
+    /// Takes a memory that was saved, of steps over `table`.
+    ///
+    /// # Errors
+    /// If the bytes are not those of this way of learning.
+    fn load(&mut self, from: &mut Loading<'_>, table: &QTable) -> Result<(), Unfit>;
+}
+
+impl Lesson {
+    pub(super) fn save(&self, to: &mut Saving) {
+        to.whole(self.state as u64);
+        to.whole(self.action as u64);
+        to.number(self.reward);
+        to.whole(self.next_state as u64);
+        to.whole(u64::from(self.terminal));
+    }
+
+    pub(super) fn load(from: &mut Loading<'_>, table: &QTable) -> Result<Self, Unfit> {
+        let (state, action) = (from.index(table.states())?, from.index(table.actions())?);
+        let reward = from.number()?;
+        Ok(Self { state, action, reward, next_state: from.index(table.states())?, terminal: from.index(2)? == 1 })
+    }
 }
 
 /// Equation (1): every traced pair moves by `step_size * td_error * trace`.

@@ -14,7 +14,7 @@
 use super::q_table::best_of;
 use super::{Policy, Softmax};
 use crate::random::Random;
-use crate::settings::{CombineSettings, LearnerSettings};
+use crate::settings::{CombineSettings, CombineWay, LearnerSettings};
 
 /// Two or more policies over the same actions, each with states of its own.
 #[derive(Debug, Clone)]
@@ -52,7 +52,7 @@ impl Combined {
     #[must_use]
     pub fn new(policies: &[&Policy], settings: &CombineSettings, learner: &LearnerSettings) -> Self {
         let actions = policies.first().map_or(0, |policy| policy.actions());
-        let by_priority = settings.way != "sum";
+        let by_priority = settings.way == CombineWay::Priority;
         let members = policies.iter().map(|policy| {
             let divisor = if settings.scaled { deviation(policy) } else { 1.0 };
             let row = |values: &[f64]| {
@@ -163,9 +163,9 @@ mod tests {
         Policy::new(3, rows.iter().map(row).collect())
     }
 
-    fn combined(policies: &[Policy], way: &str, margin: f64, scaled: bool) -> Combined {
+    fn combined(policies: &[Policy], way: CombineWay, margin: f64, scaled: bool) -> Combined {
         let policies: Vec<&Policy> = policies.iter().collect();
-        let settings = CombineSettings { way: way.to_owned(), margin, scaled };
+        let settings = CombineSettings { way, margin, scaled };
         Combined::new(&policies, &settings, &Settings::default().learner)
     }
 
@@ -178,7 +178,7 @@ mod tests {
         // In state 0 the best lies 0.5 above the median, in state 1 only 0.04.
         let first = policy(&[&[-1.0, -0.5, -1.2], &[-0.5, -0.46, -0.6]]);
         let second = policy(&[&[0.0, -2.0, -2.0]]);
-        let mut both = combined(&[first, second], "priority", 0.05, false);
+        let mut both = combined(&[first, second], CombineWay::Priority, 0.05, false);
         assert_eq!(decide(&mut both, &[0, 0]), Decision { action: 1, preferred: Some(1), decider: Some(0) });
         assert_eq!(decide(&mut both, &[1, 0]), Decision { action: 0, preferred: Some(0), decider: Some(1) });
         assert_eq!(both.votes(), [Some(1), Some(0)]);
@@ -187,14 +187,14 @@ mod tests {
     #[test]
     fn a_gap_of_exactly_the_margin_is_enough() {
         let policies = [policy(&[&[0.25, 0.0, -1.0]]), policy(&[&[0.0, 0.0, 5.0]])];
-        assert_eq!(decide(&mut combined(&policies, "priority", 0.25, false), &[0, 0]).decider, Some(0));
-        assert_eq!(decide(&mut combined(&policies, "priority", 0.2501, false), &[0, 0]).decider, Some(1));
+        assert_eq!(decide(&mut combined(&policies, CombineWay::Priority, 0.25, false), &[0, 0]).decider, Some(0));
+        assert_eq!(decide(&mut combined(&policies, CombineWay::Priority, 0.2501, false), &[0, 0]).decider, Some(1));
     }
 
     #[test]
     fn a_state_never_met_is_left_to_the_next_policy() {
         let policies = [policy(&[&[]]), policy(&[&[0.0, 9.0, 0.0], &[]])];
-        let mut both = combined(&policies, "priority", 0.0, false);
+        let mut both = combined(&policies, CombineWay::Priority, 0.0, false);
         assert_eq!(decide(&mut both, &[0, 0]), Decision { action: 1, preferred: Some(1), decider: Some(1) });
         assert_eq!(both.votes(), [None, Some(1)]);
         // The last one decides whether it knows anything or not.
@@ -206,7 +206,7 @@ mod tests {
     fn a_sum_prefers_what_suits_both() {
         // Mean-free: [1, 0.5, -1.5] and [-1.5, 0.5, 1]; their sum [-0.5, 1, -0.5].
         let policies = [policy(&[&[11.0, 10.5, 8.5]]), policy(&[&[-1.5, 0.5, 1.0]])];
-        let mut both = combined(&policies, "sum", 0.0, false);
+        let mut both = combined(&policies, CombineWay::Sum, 0.0, false);
         assert_eq!(decide(&mut both, &[0, 0]), Decision { action: 1, preferred: Some(1), decider: None });
         assert_eq!(both.sum, [-0.5, 1.0, -0.5]);
         assert_eq!(both.votes(), [Some(0), Some(2)]);
@@ -216,8 +216,8 @@ mod tests {
     fn scaling_lets_a_policy_of_small_values_be_heard() {
         // The same opinions, a hundred times as loud in the first policy.
         let policies = [policy(&[&[100.0, 0.0, -100.0]]), policy(&[&[-1.0, 0.5, 0.5]])];
-        assert_eq!(decide(&mut combined(&policies, "sum", 0.0, false), &[0, 0]).preferred, Some(0));
-        let mut scaled = combined(&policies, "sum", 0.0, true);
+        assert_eq!(decide(&mut combined(&policies, CombineWay::Sum, 0.0, false), &[0, 0]).preferred, Some(0));
+        let mut scaled = combined(&policies, CombineWay::Sum, 0.0, true);
         assert_eq!(decide(&mut scaled, &[0, 0]).preferred, Some(1));
         // 100 / sqrt(20000 / 3) = 1.2247 and -1 / sqrt(1.5 / 3) = -1.4142.
         assert!((scaled.sum[0] - (1.224_745 - std::f64::consts::SQRT_2)).abs() < 1e-6);
@@ -226,7 +226,7 @@ mod tests {
     #[test]
     fn a_sum_of_nothing_prefers_nothing() {
         let policies = [policy(&[&[]]), policy(&[&[]])];
-        assert_eq!(decide(&mut combined(&policies, "sum", 0.0, false), &[0, 0]).preferred, None);
+        assert_eq!(decide(&mut combined(&policies, CombineWay::Sum, 0.0, false), &[0, 0]).preferred, None);
     }
 
     #[test]

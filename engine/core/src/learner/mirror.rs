@@ -6,8 +6,9 @@
 //! symmetric Markov decision process are themselves symmetric.
 
 use super::QTable;
-use super::backup::{Backup, Transition};
+use super::backup::{Backup, Lesson};
 use crate::geometry::Twist;
+use crate::saved::{Loading, Saving, Unfit};
 
 /// Which state and which action is the mirror image of each.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -36,12 +37,12 @@ impl Mirror {
         self.states[state]
     }
 
-    fn transition(&self, transition: &Transition) -> Transition {
-        Transition {
-            state: self.states[transition.state],
-            action: self.actions[transition.action],
-            next_state: self.states[transition.next_state],
-            ..*transition
+    fn lesson(&self, lesson: &Lesson) -> Lesson {
+        Lesson {
+            state: self.states[lesson.state],
+            action: self.actions[lesson.action],
+            next_state: self.states[lesson.next_state],
+            ..*lesson
         }
     }
 }
@@ -54,11 +55,11 @@ pub(super) struct Mirrored {
 }
 
 impl Backup for Mirrored {
-    fn learn(&mut self, table: &mut QTable, transition: &Transition) {
-        self.own.learn(table, transition);
-        let image = self.mirror.transition(transition);
+    fn learn(&mut self, table: &mut QTable, lesson: &Lesson) {
+        self.own.learn(table, lesson);
+        let image = self.mirror.lesson(lesson);
         // Straight ahead in a symmetric view is its own image: learned twice, it would take twice the step size.
-        if image != *transition {
+        if image != *lesson {
             self.image.learn(table, &image);
         }
     }
@@ -66,6 +67,16 @@ impl Backup for Mirrored {
     fn forget(&mut self, table: &mut QTable) {
         self.own.forget(table);
         self.image.forget(table);
+    }
+
+    fn save(&self, to: &mut Saving) {
+        self.own.save(to);
+        self.image.save(to);
+    }
+
+    fn load(&mut self, from: &mut Loading<'_>, table: &QTable) -> Result<(), Unfit> {
+        self.own.load(from, table)?;
+        self.image.load(from, table)
     }
 }
 
@@ -87,14 +98,14 @@ mod tests {
         Mirrored { mirror: mirror(), own: one(), image: one() }
     }
 
-    fn step(state: usize, action: usize, next_state: usize) -> Transition {
-        Transition { state, action, reward: -1.0, next_state, terminal: false }
+    fn step(state: usize, action: usize, next_state: usize) -> Lesson {
+        Lesson { state, action, reward: -1.0, next_state, terminal: false }
     }
 
     #[test]
     fn turns_change_sides_and_straight_ahead_stays() {
         assert_eq!(mirror().actions, [2, 1, 0]);
-        assert_eq!(mirror().transition(&step(0, 0, 2)), step(1, 2, 2));
+        assert_eq!(mirror().lesson(&step(0, 0, 2)), step(1, 2, 2));
     }
 
     #[test]
@@ -123,7 +134,7 @@ mod tests {
     fn each_image_has_its_own_traces() {
         let mut table = QTable::new(3, 3, || 0.0);
         let mut mirrored = mirrored();
-        mirrored.learn(&mut table, &Transition { reward: 0.0, ..step(0, 0, 2) });
+        mirrored.learn(&mut table, &Lesson { reward: 0.0, ..step(0, 0, 2) });
         mirrored.learn(&mut table, &step(2, 0, 2));
         // The second error, -1, reaches the first step of each image by a trace of 0.99 * 0.9. The image comes second:
         // nothing changes its error, since state 2 still has actions that are worth 0.

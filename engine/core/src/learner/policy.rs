@@ -41,6 +41,12 @@ impl Policy {
         &self.rows
     }
 
+    /// How many states it knows.
+    #[must_use]
+    pub fn states_met(&self) -> usize {
+        self.rows.iter().flatten().count()
+    }
+
     /// How many actions there are.
     #[must_use]
     pub const fn actions(&self) -> usize {

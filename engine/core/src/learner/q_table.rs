@@ -64,6 +64,11 @@ impl QTable {
         before
     }
 
+    /// All values and all visits, to be filled with what was saved.
+    pub(super) fn parts_mut(&mut self) -> (&mut [f64], &mut [u64]) {
+        (&mut self.values, &mut self.visits)
+    }
+
     /// Halves what is known: every value, and the visits of each state, of which no more than `most` count.
     pub fn halve(&mut self, most: u64) {
         self.values.iter_mut().for_each(|value| *value *= 0.5);

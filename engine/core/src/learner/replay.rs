@@ -6,7 +6,8 @@
 //! Each step itself was learned before by the way of learning that is set: replay comes on top (Lin 1992 replays so).
 
 use super::QTable;
-use super::backup::{Backup, Transition};
+use super::backup::{Backup, Lesson};
+use crate::saved::{Loading, Saving, Unfit};
 use crate::settings::LearnerSettings;
 
 /// A segment ends with a recovery or after this many steps, and is learned again then.
@@ -20,7 +21,7 @@ pub(super) struct Replay {
     discount: f64,
     trace_decay: f64,
     /// Oldest first.
-    segment: Vec<Transition>,
+    segment: Vec<Lesson>,
 }
 
 impl Replay {
@@ -39,12 +40,12 @@ impl Replay {
         let Some(last) = self.segment.last() else { return };
         for _ in 0..self.passes {
             let mut lambda_return = table.best(last.next_state).1;
-            for transition in self.segment.iter().rev() {
-                let utility = table.best(transition.next_state).1;
+            for lesson in self.segment.iter().rev() {
+                let utility = table.best(lesson.next_state).1;
                 let mixed = (1.0 - self.trace_decay) * utility + self.trace_decay * lambda_return;
-                lambda_return = transition.target(self.discount, mixed);
-                let error = lambda_return - table.value(transition.state, transition.action);
-                table.add(transition.state, transition.action, self.step_size * error);
+                lambda_return = lesson.target(self.discount, mixed);
+                let error = lambda_return - table.value(lesson.state, lesson.action);
+                table.add(lesson.state, lesson.action, self.step_size * error);
             }
         }
         self.segment.clear();
@@ -52,17 +53,33 @@ impl Replay {
 }
 
 impl Backup for Replay {
-    fn learn(&mut self, table: &mut QTable, transition: &Transition) {
-        self.online.learn(table, transition);
+    fn learn(&mut self, table: &mut QTable, lesson: &Lesson) {
+        self.online.learn(table, lesson);
         if self.segment.len() == SEGMENT_STEPS {
             self.learn_again(table);
         }
-        self.segment.push(*transition);
+        self.segment.push(*lesson);
     }
 
     fn forget(&mut self, table: &mut QTable) {
         self.online.forget(table);
         self.learn_again(table);
+    }
+
+    fn save(&self, to: &mut Saving) {
+        self.online.save(to);
+        to.whole(self.segment.len() as u64);
+        self.segment.iter().for_each(|lesson| lesson.save(to));
+    }
+
+    fn load(&mut self, from: &mut Loading<'_>, table: &QTable) -> Result<(), Unfit> {
+        self.online.load(from, table)?;
+        let count = from.index(SEGMENT_STEPS + 1)?;
+        self.segment.clear();
+        for _ in 0..count {
+            self.segment.push(Lesson::load(from, table)?);
+        }
+        Ok(())
     }
 }
 
@@ -75,8 +92,12 @@ mod tests {
     struct Idle;
 
     impl Backup for Idle {
-        fn learn(&mut self, _table: &mut QTable, _transition: &Transition) {}
+        fn learn(&mut self, _table: &mut QTable, _lesson: &Lesson) {}
         fn forget(&mut self, _table: &mut QTable) {}
+        fn save(&self, _to: &mut Saving) {}
+        fn load(&mut self, _from: &mut Loading<'_>, _table: &QTable) -> Result<(), Unfit> {
+            Ok(())
+        }
     }
 
     fn replay(passes: u64) -> Replay {
@@ -85,8 +106,8 @@ mod tests {
         Replay::new(&settings, Box::new(Idle))
     }
 
-    fn step(state: usize, reward: f64) -> Transition {
-        Transition { state, action: 0, reward, next_state: state + 1, terminal: false }
+    fn step(state: usize, reward: f64) -> Lesson {
+        Lesson { state, action: 0, reward, next_state: state + 1, terminal: false }
     }
 
     #[test]
@@ -131,7 +152,7 @@ mod tests {
         let mut replay = replay(1);
         let room = replay.segment.capacity();
         for _ in 0..=SEGMENT_STEPS {
-            replay.learn(&mut table, &Transition { next_state: 1, ..step(0, -1.0) });
+            replay.learn(&mut table, &Lesson { next_state: 1, ..step(0, -1.0) });
         }
         assert!(table.value(0, 0) < -0.9);
         assert_eq!((replay.segment.len(), replay.segment.capacity()), (1, room));
@@ -141,7 +162,7 @@ mod tests {
     fn a_terminal_step_expects_nothing() {
         let mut table = QTable::new(2, 1, || -0.5);
         let mut replay = replay(1);
-        replay.learn(&mut table, &Transition { terminal: true, ..step(0, -1.0) });
+        replay.learn(&mut table, &Lesson { terminal: true, ..step(0, -1.0) });
         replay.forget(&mut table);
         assert!((table.value(0, 0) - (-0.5 + 0.2 * (-1.0 + 0.5))).abs() < 1e-15);
     }

@@ -3,8 +3,9 @@
 //! Its target needs the action that is chosen next, so a step is learned when the following one arrives.
 
 use super::QTable;
-use super::backup::{Backup, Transition, credit};
+use super::backup::{Backup, Lesson, credit};
 use super::traces::Traces;
+use crate::saved::{Loading, Saving, Unfit};
 use crate::settings::LearnerSettings;
 
 /// Traces weaker than this are dropped.
@@ -15,7 +16,7 @@ pub(super) struct SarsaLambda {
     discount: f64,
     traces: Traces,
     /// The step whose next action is not known yet.
-    pending: Option<Transition>,
+    pending: Option<Lesson>,
 }
 
 impl SarsaLambda {
@@ -27,18 +28,18 @@ impl SarsaLambda {
         Self { step_size: settings.step_size, discount: settings.discount, traces, pending: None }
     }
 
-    fn complete(&mut self, table: &mut QTable, transition: &Transition, next_value: f64) {
-        let Transition { state, action, .. } = *transition;
-        let td_error = transition.target(self.discount, next_value) - table.value(state, action);
+    fn complete(&mut self, table: &mut QTable, lesson: &Lesson, next_value: f64) {
+        let Lesson { state, action, .. } = *lesson;
+        let td_error = lesson.target(self.discount, next_value) - table.value(state, action);
         self.traces.visit(state, action);
         credit(table, &self.traces, self.step_size, td_error);
     }
 }
 
 impl Backup for SarsaLambda {
-    fn learn(&mut self, table: &mut QTable, transition: &Transition) {
-        if let Some(earlier) = self.pending.replace(*transition) {
-            let next_value = table.value(transition.state, transition.action);
+    fn learn(&mut self, table: &mut QTable, lesson: &Lesson) {
+        if let Some(earlier) = self.pending.replace(*lesson) {
+            let next_value = table.value(lesson.state, lesson.action);
             self.complete(table, &earlier, next_value);
         }
     }
@@ -50,6 +51,20 @@ impl Backup for SarsaLambda {
             self.complete(table, &last, next_value);
         }
         self.traces.clear();
+    }
+
+    fn save(&self, to: &mut Saving) {
+        self.traces.save(to);
+        to.whole(u64::from(self.pending.is_some()));
+        if let Some(pending) = &self.pending {
+            pending.save(to);
+        }
+    }
+
+    fn load(&mut self, from: &mut Loading<'_>, table: &QTable) -> Result<(), Unfit> {
+        self.traces.load(from, table)?;
+        self.pending = if from.index(2)? == 1 { Some(Lesson::load(from, table)?) } else { None };
+        Ok(())
     }
 }
 
@@ -64,9 +79,9 @@ mod tests {
         table.add(1, 0, 5.0);
         table.add(1, 1, 1.0);
         let mut sarsa = SarsaLambda::new(&Settings::default().learner);
-        sarsa.learn(&mut table, &Transition { state: 0, action: 0, reward: 2.0, next_state: 1, terminal: false });
+        sarsa.learn(&mut table, &Lesson { state: 0, action: 0, reward: 2.0, next_state: 1, terminal: false });
         assert_eq!(table.value(0, 0), 0.0);
-        sarsa.learn(&mut table, &Transition { state: 1, action: 1, reward: 0.0, next_state: 2, terminal: false });
+        sarsa.learn(&mut table, &Lesson { state: 1, action: 1, reward: 0.0, next_state: 2, terminal: false });
         // 0.2 * (2 + 0.99 * 1 - 0)
         assert!((table.value(0, 0) - 0.598).abs() < 1e-12);
     }
@@ -75,7 +90,7 @@ mod tests {
     fn the_last_step_before_a_recovery_is_learned_too() {
         let mut table = QTable::new(2, 1, || -0.5);
         let mut sarsa = SarsaLambda::new(&Settings::default().learner);
-        sarsa.learn(&mut table, &Transition { state: 0, action: 0, reward: -1.0, next_state: 1, terminal: false });
+        sarsa.learn(&mut table, &Lesson { state: 0, action: 0, reward: -1.0, next_state: 1, terminal: false });
         sarsa.forget(&mut table);
         assert!((table.value(0, 0) - (-0.5 + 0.2 * (-1.0 - 0.495 + 0.5))).abs() < 1e-12);
     }

@@ -1,5 +1,8 @@
 //! Eligibility traces over the last distinct states, equation (2).
 
+use super::QTable;
+use crate::saved::{Loading, Saving, Unfit};
+
 /// One remembered pair and how much of an error it takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Trace {
@@ -36,6 +39,27 @@ impl Traces {
 
     pub(super) fn iter(&self) -> impl Iterator<Item = &Trace> {
         self.recent.iter()
+    }
+
+    /// Writes all traces.
+    pub(super) fn save(&self, to: &mut Saving) {
+        to.whole(self.recent.len() as u64);
+        for trace in &self.recent {
+            to.whole(trace.state as u64);
+            to.whole(trace.action as u64);
+            to.number(trace.weight);
+        }
+    }
+
+    /// Takes traces that were saved.
+    pub(super) fn load(&mut self, from: &mut Loading<'_>, table: &QTable) -> Result<(), Unfit> {
+        let count = from.index(self.window + 1)?;
+        self.recent.clear();
+        for _ in 0..count {
+            let (state, action) = (from.index(table.states())?, from.index(table.actions())?);
+            self.recent.push(Trace { state, action, weight: from.number()? });
+        }
+        Ok(())
     }
 
     pub(super) fn clear(&mut self) {

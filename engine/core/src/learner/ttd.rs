@@ -1,8 +1,9 @@
 //! TTD(lambda) Q-learning as the paper prints it, equations (1) and (2): the default, `ttd`; with a window of one, `q`.
 
 use super::QTable;
-use super::backup::{Backup, Transition, credit};
+use super::backup::{Backup, Lesson, credit};
 use super::traces::Traces;
+use crate::saved::{Loading, Saving, Unfit};
 use crate::settings::LearnerSettings;
 
 /// One TD error for the last n distinct states.
@@ -29,15 +30,23 @@ impl Ttd {
 }
 
 impl Backup for Ttd {
-    fn learn(&mut self, table: &mut QTable, transition: &Transition) {
-        let Transition { state, action, next_state, .. } = *transition;
-        let td_error = transition.target(self.discount, table.best(next_state).1) - table.value(state, action);
+    fn learn(&mut self, table: &mut QTable, lesson: &Lesson) {
+        let Lesson { state, action, next_state, .. } = *lesson;
+        let td_error = lesson.target(self.discount, table.best(next_state).1) - table.value(state, action);
         self.traces.visit(state, action);
         credit(table, &self.traces, self.step_size, td_error);
     }
 
     fn forget(&mut self, _table: &mut QTable) {
         self.traces.clear();
+    }
+
+    fn save(&self, to: &mut Saving) {
+        self.traces.save(to);
+    }
+
+    fn load(&mut self, from: &mut Loading<'_>, table: &QTable) -> Result<(), Unfit> {
+        self.traces.load(from, table)
     }
 }
 
@@ -46,8 +55,8 @@ mod tests {
     use super::*;
     use crate::settings::Settings;
 
-    fn step(state: usize, reward: f64, next_state: usize) -> Transition {
-        Transition { state, action: 0, reward, next_state, terminal: false }
+    fn step(state: usize, reward: f64, next_state: usize) -> Lesson {
+        Lesson { state, action: 0, reward, next_state, terminal: false }
     }
 
     #[test]
@@ -85,20 +94,20 @@ mod tests {
         settings.window = 1;
         let mut ttd = Ttd::new(&settings);
         for index in 0..200 {
-            let transition = Transition {
+            let lesson = Lesson {
                 state: index * 7 % 5,
                 action: index % 2,
                 reward: -f64::from(u8::from(index % 3 == 0)),
                 next_state: index * 11 % 5,
                 terminal: false,
             };
-            let Transition { state, action, reward, next_state, .. } = transition;
-            q.learn(&mut one, &transition);
+            let Lesson { state, action, reward, next_state, .. } = lesson;
+            q.learn(&mut one, &lesson);
             let by_hand = {
                 let error = reward + 0.99 * narrow.best(next_state).1 - narrow.value(state, action);
                 narrow.value(state, action) + 0.2 * error
             };
-            ttd.learn(&mut narrow, &transition);
+            ttd.learn(&mut narrow, &lesson);
             assert!((narrow.value(state, action) - by_hand).abs() < 1e-15);
         }
         assert_eq!(one, narrow);
@@ -108,7 +117,7 @@ mod tests {
     fn a_terminal_step_expects_nothing() {
         let mut table = QTable::new(2, 1, || -0.5);
         let mut ttd = Ttd::new(&Settings::default().learner);
-        ttd.learn(&mut table, &Transition { terminal: true, ..step(0, -1.0, 1) });
+        ttd.learn(&mut table, &Lesson { terminal: true, ..step(0, -1.0, 1) });
         assert!((table.value(0, 0) - (-0.5 + 0.2 * (-1.0 + 0.5))).abs() < 1e-15);
     }
 }

@@ -7,7 +7,8 @@
 use std::collections::VecDeque;
 
 use super::QTable;
-use super::backup::{Backup, Transition};
+use super::backup::{Backup, Lesson};
+use crate::saved::{Loading, Saving, Unfit};
 use crate::settings::LearnerSettings;
 
 struct Experience {
@@ -55,8 +56,8 @@ impl TtdCichosz {
 }
 
 impl Backup for TtdCichosz {
-    fn learn(&mut self, table: &mut QTable, transition: &Transition) {
-        let Transition { state, action, reward, next_state, terminal } = *transition;
+    fn learn(&mut self, table: &mut QTable, lesson: &Lesson) {
+        let Lesson { state, action, reward, next_state, terminal } = *lesson;
         let utility = if terminal { 0.0 } else { table.best(next_state).1 };
         self.buffer.push_back(Experience { state, action, reward, utility });
         if self.buffer.len() == self.window {
@@ -69,6 +70,26 @@ impl Backup for TtdCichosz {
             self.learn_oldest(table);
         }
     }
+
+    fn save(&self, to: &mut Saving) {
+        to.whole(self.buffer.len() as u64);
+        for experience in &self.buffer {
+            to.whole(experience.state as u64);
+            to.whole(experience.action as u64);
+            to.number(experience.reward);
+            to.number(experience.utility);
+        }
+    }
+
+    fn load(&mut self, from: &mut Loading<'_>, table: &QTable) -> Result<(), Unfit> {
+        let count = from.index(self.window + 1)?;
+        self.buffer.clear();
+        for _ in 0..count {
+            let (state, action) = (from.index(table.states())?, from.index(table.actions())?);
+            self.buffer.push_back(Experience { state, action, reward: from.number()?, utility: from.number()? });
+        }
+        Ok(())
+    }
 }
 
 #[cfg(test)]
@@ -76,8 +97,8 @@ mod tests {
     use super::*;
     use crate::settings::Settings;
 
-    fn step(state: usize, reward: f64, next_state: usize) -> Transition {
-        Transition { state, action: 0, reward, next_state, terminal: false }
+    fn step(state: usize, reward: f64, next_state: usize) -> Lesson {
+        Lesson { state, action: 0, reward, next_state, terminal: false }
     }
 
     #[test]

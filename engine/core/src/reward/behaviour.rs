@@ -3,12 +3,11 @@
 use super::compile::Needs;
 use super::draft::Draft;
 use super::explain;
-use super::expression::Number;
 use super::judge::Judge;
 use super::outline::Outline;
 use super::reach;
 use super::readings::Part;
-use super::rule::{Clause, Rule, RuleText};
+use super::rule::{Rule, RuleText};
 use super::setup::Places;
 use super::source::Code;
 use crate::diagnostic::{Mistakes, Result, SourceText};
@@ -135,10 +134,7 @@ impl Behaviour {
     /// What a rule adds whenever it fires; nothing if that depends on the step, as with `fn reward`.
     #[must_use]
     pub fn fixed_value(&self, rule: usize) -> Option<f64> {
-        match self.loaded.rules.get(rule)?.value {
-            Clause::Native(Number::Constant(value)) => Some(value),
-            _ => None,
-        }
+        self.loaded.rules.get(rule)?.fixed_value()
     }
 
     /// A judge with fresh counters, for one seed; `period_s` is the time between two steps, in seconds.

@@ -28,6 +28,8 @@ pub struct Judge {
     /// For each rule, how many steps its condition must hold.
     needed: Vec<u32>,
     held: Vec<u32>,
+    /// For each rule, what a step in which its condition holds builds up: its fixed value over the steps that it needs.
+    built_up: Vec<f64>,
     fired: Vec<Option<f64>>,
 }
 
@@ -38,8 +40,13 @@ impl Judge {
         let facts = Arc::new(Facts { ranges_m: vec![0.0; beams], ..Facts::default() });
         let calibrated = loaded.calibrate.is_none().then(Arc::default);
         let (held, fired) = (vec![0; needed.len()], vec![None; entries]);
+        let built_up = loaded.rules.iter().zip(&needed).map(|(rule, needed)| match rule.fixed_value() {
+            Some(value) if *needed > 1 => value / f64::from(*needed),
+            _ => 0.0,
+        });
+        let built_up = built_up.collect();
         let present = Present { loaded, facts, calibrated, slots: Vec::new() };
-        Self { present, beams, needed, held, fired }
+        Self { present, beams, needed, held, built_up, fired }
     }
 
     /// The facts of the last step.
@@ -167,6 +174,13 @@ impl Judge {
     /// The robot has been brought back: every persistence starts again.
     pub fn recovered(&mut self) {
         self.held.fill(0);
+    }
+
+    /// What the rules that must hold for a time have built up: the sum of each one's fixed value times the share of the time
+    /// for which it has held.
+    #[must_use]
+    pub fn potential(&self) -> f64 {
+        self.held.iter().zip(&self.built_up).map(|(held, value)| f64::from(*held) * value).sum()
     }
 
     fn check_facts(&self) -> Result<()> {

@@ -76,6 +76,14 @@ pub(super) struct Rule {
 }
 
 impl Rule {
+    /// What it adds whenever it fires; nothing if that depends on the step.
+    pub(super) fn fixed_value(&self) -> Option<f64> {
+        match self.value {
+            Clause::Native(Number::Constant(value)) => Some(value),
+            _ => None,
+        }
+    }
+
     /// Checks and compiles a rule; nothing if there is a mistake in it. Each is added to `mistakes`: an empty name, a
     /// condition that is none, a value that is no number, a time that is no time.
     pub(super) fn new(

@@ -157,8 +157,8 @@ fn the_set_up_becomes_settings_with_places() {
     let settings = behaviour.settings();
     assert_eq!((settings.world.as_str(), settings.filters.len(), settings.actions.len()), ("hall", 2, 2));
     assert_eq!(settings.filters[1].parameters, [("threshold".to_owned(), 70.0)]);
-    assert_eq!((settings.camera.tilt_deg, settings.camera.lens.as_str()), (30.0, "fisheye"));
-    assert_eq!((settings.learner.kind.as_str(), settings.learner.window), ("q", 5));
+    assert_eq!((settings.camera.tilt_deg, settings.camera.lens.word()), (30.0, "fisheye"));
+    assert_eq!((settings.learner.kind.word(), settings.learner.window), ("q", 5));
     assert!(!settings.grid.fill);
     let at = |name: &str| &text[behaviour.place_of(name).unwrap()];
     assert_eq!((at("world"), at("filter:1"), at("filter:1.threshold")), ("world", "filter", "70"));

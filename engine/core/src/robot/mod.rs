@@ -1,21 +1,22 @@
-//! ACT. The narrow door between the step loop and whatever moves.
+//! The narrow door between the step loop and whatever moves.
 //!
-//! The loop takes observations and gives twists; it cannot tell the simulator from a real robot. Truth (poses, routes)
-//! does not pass through this door.
+//! The loop takes observations and gives twists; it cannot tell the simulator from a real robot. What a robot may know
+//! beside its sensors, where it truly is, serves tests, records and pictures only: no script, state or learner sees it.
 
 mod recovery;
 mod simulated;
 
 use crate::diagnostic::Result;
-use crate::geometry::Twist;
-use crate::sensors::observation::Observation;
+use crate::geometry::{Pose, Twist};
+use crate::sensors::observation::{Image, Observation};
 
 pub use recovery::Recovery;
 pub use simulated::SimulatedRobot;
 
 /// What the step loop needs of a robot.
 pub trait Robot {
-    /// Fills `observation` with what the sensors measure now. The image comes in the format that it has, or in colour.
+    /// Fills `observation` with what the sensors measure now. The image comes in the format that it has when it is handed
+    /// in, which is what the observation asks for, or in colour, which every filter chain takes.
     ///
     /// # Errors
     /// If a sensor is broken: a blank or frozen camera.
@@ -32,4 +33,29 @@ pub trait Robot {
     /// # Errors
     /// If there is no safe pose.
     fn recover(&mut self) -> Result<()>;
+
+    /// Where the robot is, if anything but its own sensors knows: the truth of a simulator, or a localiser in a mapped
+    /// place. Without an answer, a test has no laps, paths or distances.
+    fn whereabouts(&self) -> Option<Whereabouts> {
+        None
+    }
+
+    /// Where the first thing that drives by itself is, if there is one and its place is known.
+    fn prey(&self) -> Option<Pose> {
+        None
+    }
+
+    /// The last observation's image in colour, for pictures, if it can be had; else the observation's own image serves.
+    fn photograph(&self) -> Option<Image> {
+        None
+    }
+}
+
+/// Where a robot is in its world.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Whereabouts {
+    /// Place and heading on the floor plan: metres, metres, radians.
+    pub pose: Pose,
+    /// Height of the ground under its centre, metres.
+    pub z_m: f64,
 }

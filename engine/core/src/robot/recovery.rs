@@ -3,7 +3,7 @@
 use crate::diagnostic::{Diagnostic, Result};
 use crate::geometry::{Point2, Pose};
 use crate::random::{Random, Stream};
-use crate::settings::RecoverySettings;
+use crate::settings::{RecoverTo, RecoverySettings};
 use crate::world::{Layout, Route, World};
 
 /// How often a shifted pose is drawn before the unshifted ones are tried.
@@ -39,7 +39,7 @@ impl Recovery {
             }
         }
         let safe = |pose: &Pose| world.is_safe(*pose);
-        let found = if self.settings.to == "behind" {
+        let found = if self.settings.to == RecoverTo::Behind {
             self.farther_behind(world).find(safe)
         } else {
             let starts = world.layout().starts.iter().copied();
@@ -50,18 +50,18 @@ impl Recovery {
 
     fn base(&mut self, world: &World) -> Result<Pose> {
         let layout = world.layout();
-        match self.settings.to.as_str() {
-            "nearest" => {
+        match self.settings.to {
+            RecoverTo::Nearest => {
                 let pose = world.body().pose;
                 let route = lap(layout).ok_or_else(|| self.no_route(layout))?;
                 Ok(route.pose_at(route.nearest(Point2::new(pose.x_m, pose.y_m)).0))
             }
-            "random" => {
+            RecoverTo::Random => {
                 let route = lap(layout).ok_or_else(|| self.no_route(layout))?;
                 Ok(route.pose_at(self.random.between(0.0, route.length_m())))
             }
-            "behind" => self.farther_behind(world).next().ok_or_else(|| no_mover(layout)),
-            _ => Ok(layout.starts[self.random.below(layout.starts.len() as u32) as usize]),
+            RecoverTo::Behind => self.farther_behind(world).next().ok_or_else(|| no_mover(layout)),
+            RecoverTo::Start => Ok(layout.starts[self.random.below(layout.starts.len() as u32) as usize]),
         }
     }
 
@@ -86,7 +86,7 @@ impl Recovery {
     }
 
     fn no_route(&self, layout: &Layout) -> Box<Diagnostic> {
-        let to = &self.settings.to;
+        let to = self.settings.to.word();
         let message = format!("recovery(\"{to}\") needs the route 'lap', and the world '{}' has none", layout.name);
         ends(layout, "E-RECOVERY-ROUTE", message)
             .help(
@@ -98,7 +98,7 @@ impl Recovery {
 
     fn blocked(&self, world: &World) -> Box<Diagnostic> {
         let name = &world.layout().name;
-        let (places, help) = if self.settings.to == "behind" {
+        let (places, help) = if self.settings.to == RecoverTo::Behind {
             (
                 "place behind the first mover",
                 "give the mover a longer route, or keep the route clear of solids and edges",
@@ -152,8 +152,8 @@ mod tests {
         World::new(Arc::new(layout), &Settings::default().robot, 0.5, 1)
     }
 
-    fn exact(to: &str) -> Recovery {
-        Recovery::new(&RecoverySettings { to: to.to_owned(), distance_m: 1.1, position_m: 0.0, yaw_deg: 0.0 }, 1)
+    fn exact(to: RecoverTo) -> Recovery {
+        Recovery::new(&RecoverySettings { to, distance_m: 1.1, position_m: 0.0, yaw_deg: 0.0 }, 1)
     }
 
     fn is_near(pose: Pose, x_m: f64, y_m: f64, yaw_rad: f64) -> bool {
@@ -163,12 +163,12 @@ mod tests {
     #[test]
     fn behind_a_mover_is_a_place_on_its_route_that_looks_along_it() {
         let mut world = world(&format!("{CORNER}{MOVER}"));
-        assert!(is_near(exact("behind").pose(&world).unwrap(), 0.9, 0.0, 0.0));
+        assert!(is_near(exact(RecoverTo::Behind).pose(&world).unwrap(), 0.9, 0.0, 0.0));
         for _ in 0..7 {
             world.advance(Twist::default());
         }
         // 2 + 3.5 m along: 1.5 m past the corner; 1.1 m less is on the second side too.
-        assert!(is_near(exact("behind").pose(&world).unwrap(), 4.0, 0.4, FRAC_PI_2));
+        assert!(is_near(exact(RecoverTo::Behind).pose(&world).unwrap(), 4.0, 0.4, FRAC_PI_2));
     }
 
     #[test]
@@ -177,7 +177,7 @@ mod tests {
         for _ in 0..100 {
             world.advance(Twist::default());
         }
-        assert!(is_near(exact("behind").pose(&world).unwrap(), 4.0, 2.9, FRAC_PI_2));
+        assert!(is_near(exact(RecoverTo::Behind).pose(&world).unwrap(), 4.0, 2.9, FRAC_PI_2));
     }
 
     #[test]
@@ -185,21 +185,21 @@ mod tests {
         let wall = "[[wall]]\npoints_m = [[1, -1], [1, 1]]\n";
         let world = world(&format!("{CORNER}{}{wall}", MOVER.replace("= 2", "= 3")));
         // 1.9 m along is free; 0.25 m of half length ahead of the wall it would be at 1.3 m at least.
-        assert!(is_near(exact("behind").pose(&world).unwrap(), 1.9, 0.0, 0.0));
+        assert!(is_near(exact(RecoverTo::Behind).pose(&world).unwrap(), 1.9, 0.0, 0.0));
         let world = self::world(&format!("{CORNER}{MOVER}{}", wall.replace("[1, ", "[0.9, ")));
-        assert!(is_near(exact("behind").pose(&world).unwrap(), 0.4, 0.0, 0.0));
+        assert!(is_near(exact(RecoverTo::Behind).pose(&world).unwrap(), 0.4, 0.0, 0.0));
     }
 
     #[test]
     fn a_world_without_what_recovery_needs_is_an_error_that_names_it() {
         let bare = world(CORNER);
-        assert_eq!(exact("behind").pose(&bare).unwrap_err().code, "E-RECOVERY-MOVER");
-        for to in ["nearest", "random"] {
+        assert_eq!(exact(RecoverTo::Behind).pose(&bare).unwrap_err().code, "E-RECOVERY-MOVER");
+        for to in [RecoverTo::Nearest, RecoverTo::Random] {
             let error = exact(to).pose(&bare).unwrap_err();
             assert_eq!(error.code, "E-RECOVERY-ROUTE");
             let help = error.help.unwrap();
             assert!(help.contains("name = \"lap\"") && help.contains("recovery(\"start\")"), "{help}");
         }
-        assert!(is_near(exact("start").pose(&bare).unwrap(), 0.0, 3.0, 0.0));
+        assert!(is_near(exact(RecoverTo::Start).pose(&bare).unwrap(), 0.0, 3.0, 0.0));
     }
 }

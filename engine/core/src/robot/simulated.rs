@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use super::{Recovery, Robot};
+use super::{Recovery, Robot, Whereabouts};
 use crate::diagnostic::Result;
-use crate::geometry::Twist;
+use crate::geometry::{Pose, Twist};
 use crate::sensors::observation::{Image, Observation};
 use crate::sensors::{Camera, CameraWatch, Laser, self_test};
 use crate::settings::{CameraSettings, Settings};
@@ -41,16 +41,6 @@ impl SimulatedRobot {
         Ok(Self { world, camera, laser, watch, recovery, motion, moved: false })
     }
 
-    /// The image of the last observation in colour, for pictures; call it before anything moves.
-    #[must_use]
-    pub fn photograph(&self) -> Image {
-        let mut camera = self.camera.clone();
-        camera.set_frames(camera.frames().saturating_sub(1));
-        let mut image = Image::new(0, 0);
-        camera.render(&self.world.body().world_from_robot(), self.world.moving(), &mut image);
-        image
-    }
-
     /// The truth, for tests and reports only.
     #[must_use]
     pub fn world(&self) -> &World {
@@ -83,5 +73,23 @@ impl Robot for SimulatedRobot {
         self.motion = Motion::default();
         self.moved = true;
         Ok(())
+    }
+
+    fn whereabouts(&self) -> Option<Whereabouts> {
+        let body = self.world.body();
+        Some(Whereabouts { pose: body.pose, z_m: body.z_m })
+    }
+
+    fn prey(&self) -> Option<Pose> {
+        self.world.prey()
+    }
+
+    /// Call it before anything moves: the frame is drawn a second time.
+    fn photograph(&self) -> Option<Image> {
+        let mut camera = self.camera.clone();
+        camera.set_frames(camera.frames().saturating_sub(1));
+        let mut image = Image::new(0, 0);
+        camera.render(&self.world.body().world_from_robot(), self.world.moving(), &mut image);
+        Some(image)
     }
 }

@@ -13,7 +13,7 @@ use super::surface::Surfaces;
 use super::texture::{Looks, Mark};
 use super::view::{Affine, Frustum, Pinhole, View};
 use crate::geometry::{Isometry3, Point3, Vector3};
-use crate::settings::CameraSettings;
+use crate::settings::{CameraSettings, Lens};
 use crate::world::scene::{Scene, Solid};
 use dispatch::Processor;
 use filter_api::Format;
@@ -59,7 +59,7 @@ impl Camera {
     pub fn new(scene: &Arc<Scene>, settings: &CameraSettings, seed: u64) -> Self {
         let (width_px, height_px) = (settings.width_px as usize, settings.height_px as usize);
         let field_of_view_rad = settings.field_of_view_deg.to_radians();
-        let fisheye = (settings.lens == "fisheye").then(|| Fisheye::new(width_px, height_px, field_of_view_rad));
+        let fisheye = (settings.lens == Lens::Fisheye).then(|| Fisheye::new(width_px, height_px, field_of_view_rad));
         let focal_px = width_px as f64 * 0.5 / libm::tan(field_of_view_rad * 0.5);
         let pinhole = fisheye.as_ref().map_or(Pinhole { width_px, height_px, focal_px }, |lens| lens.pinhole);
         let (sin, cos) = libm::sincos(settings.tilt_deg.to_radians());

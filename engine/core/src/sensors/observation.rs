@@ -67,3 +67,17 @@ pub struct Observation {
     /// Speeds from the wheel encoders.
     pub odometry: Twist,
 }
+
+impl Observation {
+    /// An empty observation that asks for an image of a format and a size, and for so many beams.
+    #[must_use]
+    pub fn asking_for(format: Format, width_px: usize, height_px: usize, beams: usize) -> Self {
+        Self {
+            image: Image::of(format, width_px, height_px),
+            scan: Scan { ranges_m: vec![0.0; beams] },
+            contact: false,
+            fallen: false,
+            odometry: Twist::default(),
+        }
+    }
+}

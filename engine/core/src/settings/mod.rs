@@ -4,9 +4,11 @@
 //! `--set`, `run.toml`, range checks and the reference page all read it.
 
 mod table;
+mod words;
 
 use crate::geometry::Twist;
 pub use table::{SETTINGS, Setting, SettingError, Shape, Value, apply};
+pub use words::{CombineWay, LearnerKind, Lens, RecoverTo};
 
 /// Everything that a run needs besides its seed.
 #[derive(Debug, Clone, PartialEq)]
@@ -83,7 +85,7 @@ pub struct CameraSettings {
     pub width_px: u64,
     pub height_px: u64,
     pub field_of_view_deg: f64,
-    pub lens: String,
+    pub lens: Lens,
     pub forward_m: f64,
     pub height_m: f64,
     pub tilt_deg: f64,
@@ -117,7 +119,7 @@ pub struct GridSettings {
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs, reason = "every field is documented in the table of settings")]
 pub struct LearnerSettings {
-    pub kind: String,
+    pub kind: LearnerKind,
     pub step_size: f64,
     pub discount: f64,
     pub trace_decay: f64,
@@ -136,7 +138,7 @@ pub struct LearnerSettings {
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs, reason = "every field is documented in the table of settings")]
 pub struct RecoverySettings {
-    pub to: String,
+    pub to: RecoverTo,
     pub distance_m: f64,
     pub position_m: f64,
     pub yaw_deg: f64,
@@ -153,13 +155,10 @@ pub struct MoverSettings {
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs, reason = "every field is documented in the table of settings")]
 pub struct CombineSettings {
-    pub way: String,
+    pub way: CombineWay,
     pub margin: f64,
     pub scaled: bool,
 }
-
-/// The ways of learning, by name.
-pub const LEARNERS: &[&str] = &["ttd", "ttd-cichosz", "q", "sarsa-lambda"];
 
 /// Table 2 of the paper: forward speed in m/s, turning speed in rad/s.
 pub const PAPER_ACTIONS: [(f64, f64); 14] = [
@@ -192,7 +191,7 @@ impl Default for Settings {
                 width_px: 160,
                 height_px: 120,
                 field_of_view_deg: 80.0,
-                lens: "pinhole".to_owned(),
+                lens: Lens::Pinhole,
                 forward_m: 0.10,
                 height_m: 0.81,
                 tilt_deg: 42.0,
@@ -210,7 +209,7 @@ impl Default for Settings {
             },
             grid: GridSettings { rows: 3, columns: 3, occupied: 0.015, fill: true },
             learner: LearnerSettings {
-                kind: "ttd".to_owned(),
+                kind: LearnerKind::Ttd,
                 step_size: 0.2,
                 discount: 0.99,
                 trace_decay: 0.9,
@@ -224,10 +223,10 @@ impl Default for Settings {
                 mirror: false,
                 replay: 0,
             },
-            recovery: RecoverySettings { to: "nearest".to_owned(), distance_m: 1.1, position_m: 0.1, yaw_deg: 8.6 },
+            recovery: RecoverySettings { to: RecoverTo::Nearest, distance_m: 1.1, position_m: 0.1, yaw_deg: 8.6 },
             movers: MoverSettings { speed: 1.0 },
             policies: Vec::new(),
-            combine: CombineSettings { way: "priority".to_owned(), margin: 0.5, scaled: false },
+            combine: CombineSettings { way: CombineWay::Priority, margin: 0.5, scaled: false },
         }
     }
 }

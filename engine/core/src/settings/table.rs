@@ -1,6 +1,6 @@
 //! The one list of settings.
 
-use super::{LEARNERS, Settings};
+use super::{CombineWay, LearnerKind, Lens, RecoverTo, Settings};
 use crate::diagnostic::nearest_name;
 
 /// A setting's value as it stands in a file or a script.
@@ -94,16 +94,25 @@ impl Stored for bool {
     }
 }
 
-impl Stored for String {
-    fn value(&self) -> Value {
-        Value::Text(self.clone())
-    }
-    fn store(&mut self, value: &Value) {
-        if let Value::Text(text) = value {
-            self.clone_from(text);
-        }
-    }
+/// Words are checked against the table before they are stored.
+macro_rules! stored_words {
+    ($($name:ident),*) => {
+        $(impl Stored for $name {
+            fn value(&self) -> Value {
+                Value::Text(self.word().to_owned())
+            }
+            fn store(&mut self, value: &Value) {
+                if let Value::Text(text) = value
+                    && let Some(word) = Self::of(text)
+                {
+                    *self = word;
+                }
+            }
+        })*
+    };
 }
+
+stored_words!(CombineWay, LearnerKind, Lens, RecoverTo);
 
 macro_rules! settings {
     ($($group:ident . $key:ident, $unit:literal, $shape:expr, $purpose:literal;)*) => {
@@ -133,7 +142,7 @@ settings! {
     camera.width_px, "pixels", Whole(16, 1280), "Width of the image.";
     camera.height_px, "pixels", Whole(12, 960), "Height of the image.";
     camera.field_of_view_deg, "degrees", Number(10.0, 120.0), "Horizontal field of view.";
-    camera.lens, "", Choice(&["pinhole", "fisheye"]), "The projection; `fisheye` is equidistant.";
+    camera.lens, "", Choice(Lens::WORDS), "The projection; `fisheye` is equidistant.";
     camera.forward_m, "metres", Number(-1.0, 1.0), "Place of the camera ahead of the robot's centre.";
     camera.height_m, "metres", Number(0.05, 3.0), "Height of the camera above the floor.";
     camera.tilt_deg, "degrees", Number(-30.0, 90.0), "How far the camera looks down.";
@@ -149,7 +158,7 @@ settings! {
     grid.columns, "cells", Whole(1, 16), "Columns of the grid.";
     grid.occupied, "share", Number(0.0001, 1.0), "Share of foreground pixels from which a cell is occupied.";
     grid.fill, "", Flag, "Whether an occupied cell fills those above it.";
-    learner.kind, "", Choice(LEARNERS), "The way of learning.";
+    learner.kind, "", Choice(LearnerKind::WORDS), "The way of learning.";
     learner.step_size, "share", Number(0.0, 1.0), "Share of the error that is learned (alpha).";
     learner.discount, "share", Number(0.0, 1.0), "How much the next value counts (gamma).";
     learner.trace_decay, "share", Number(0.0, 1.0), "How fast the memory of earlier states fades (lambda).";
@@ -162,12 +171,12 @@ settings! {
     learner.failure_is_terminal, "", Flag, "Whether nothing is expected after a failure.";
     learner.mirror, "", Flag, "Whether each step is also learned left for right; for symmetric tasks.";
     learner.replay, "passes", Whole(0, 100), "How often the steps before a recovery, 60 at most, are learned again backwards.";
-    recovery.to, "", Choice(&["nearest", "random", "start", "behind"]), "Where recovery puts the robot: on the lap route, at a start, or behind the first mover.";
+    recovery.to, "", Choice(RecoverTo::WORDS), "Where recovery puts the robot: on the lap route, at a start, or behind the first mover.";
     recovery.distance_m, "metres", Number(0.0, 100.0), "How far behind the mover, along its route; for `behind` only.";
     recovery.position_m, "metres", Number(0.0, 2.0), "Greatest random shift of that place.";
     recovery.yaw_deg, "degrees", Number(0.0, 180.0), "Greatest random turn of that heading.";
     movers.speed, "times", Number(0.0, 10.0), "How fast everything that drives by itself is, by the speed in the world file.";
-    combine.way, "", Choice(&["priority", "sum"]), "How several policies become one.";
+    combine.way, "", Choice(CombineWay::WORDS), "How several policies become one.";
     combine.margin, "value", Number(0.0, 1000.0), "By priority: best less median value from which a policy decides.";
     combine.scaled, "", Flag, "By sum: whether each policy's values are divided by their deviation first.";
 }

@@ -32,6 +32,8 @@ pub struct Grid {
     counts: Vec<u32>,
     occupied: Vec<bool>,
     states: usize,
+    /// The state of the last mask.
+    state: usize,
     /// Set pixels of each pixel column, of some rows.
     sums: Vec<u8>,
     processor: Processor,
@@ -77,6 +79,7 @@ impl Grid {
             counts: vec![0; rows * columns],
             occupied: vec![false; rows * columns],
             states,
+            state: 0,
             sums: vec![0; width_px],
             processor: Processor::best(),
         })
@@ -100,6 +103,17 @@ impl Grid {
         for ((occupied, count), least) in self.occupied.iter_mut().zip(&self.counts).zip(&self.least) {
             *occupied = count >= least;
         }
+        self.state = self.code();
+        self.state
+    }
+
+    /// The state of the last mask.
+    #[must_use]
+    pub const fn state(&self) -> usize {
+        self.state
+    }
+
+    fn code(&self) -> usize {
         if !self.fill {
             return self.occupied.iter().rev().fold(0, |state, occupied| 2 * state + usize::from(*occupied));
         }

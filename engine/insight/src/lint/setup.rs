@@ -2,7 +2,7 @@
 
 use super::Finding;
 use engine::experiment::Plan;
-use engine::settings::SETTINGS;
+use engine::settings::{CombineWay, LearnerKind, RecoverTo, SETTINGS};
 
 pub(super) fn check(plan: &Plan, findings: &mut Vec<Finding>) {
     for row in SETTINGS {
@@ -35,16 +35,17 @@ fn idle(plan: &Plan, name: &str) -> Option<(String, &'static str)> {
     let (learner, combines) = (&settings.learner, !settings.policies.is_empty());
     let reads_laser = outline.groups.iter().any(|group| group == "laser");
     let (group, key) = name.split_once('.')?;
-    let kind = |kinds: &[&str]| kinds.contains(&learner.kind.as_str());
+    let kind = |kinds: &[LearnerKind]| kinds.contains(&learner.kind);
     let why = match (group, key) {
         ("laser", _) if !reads_laser => ("no rule reads the laser".to_owned(), "take it out, or read laser.nearest"),
-        ("learner", "window") if kind(&["q", "sarsa-lambda"]) => {
-            (format!("learner \"{}\" has no window", learner.kind), "take it out, or write learner(\"ttd\", ...)")
-        }
-        ("learner", "trace_decay") if kind(&["q"]) => {
+        ("learner", "window") if kind(&[LearnerKind::Q, LearnerKind::SarsaLambda]) => (
+            format!("learner \"{}\" has no window", learner.kind.word()),
+            "take it out, or write learner(\"ttd\", ...)",
+        ),
+        ("learner", "trace_decay") if kind(&[LearnerKind::Q]) => {
             ("learner \"q\" has no traces".to_owned(), "take it out, or write learner(\"ttd\", ...)")
         }
-        ("learner", "trace_decay") if learner.window == 1 && kind(&["ttd", "ttd-cichosz"]) => {
+        ("learner", "trace_decay") if learner.window == 1 && kind(&[LearnerKind::Ttd, LearnerKind::TtdCichosz]) => {
             ("a window of 1 has no earlier states".to_owned(), "set learner.window to 3 or more, or take it out")
         }
         ("learner", "cooling_visits") if learner.temperature <= learner.temperature_end => (
@@ -54,16 +55,17 @@ fn idle(plan: &Plan, name: &str) -> Option<(String, &'static str)> {
         ("learner", "failure_is_terminal" | "replay") | ("recovery", _) if !outline.recovers() => {
             ("no rule recovers".to_owned(), "add 'then recover' to a rule, or take it out")
         }
-        ("recovery", "distance_m") if settings.recovery.to != "behind" => {
-            (format!("recovery is to \"{}\"", settings.recovery.to), "write recovery(\"behind\", ...), or take it out")
-        }
+        ("recovery", "distance_m") if settings.recovery.to != RecoverTo::Behind => (
+            format!("recovery is to \"{}\"", settings.recovery.to.word()),
+            "write recovery(\"behind\", ...), or take it out",
+        ),
         ("movers", _) if plan.layout.movers.is_empty() => {
             (format!("nothing drives by itself in world '{}'", plan.layout.name), "take it out, or use another world")
         }
-        ("combine", "margin") if settings.combine.way == "sum" => {
+        ("combine", "margin") if settings.combine.way == CombineWay::Sum => {
             ("policies are combined by sum".to_owned(), "take it out, or write combine(\"priority\", ...)")
         }
-        ("combine", "scaled") if settings.combine.way == "priority" => {
+        ("combine", "scaled") if settings.combine.way == CombineWay::Priority => {
             ("policies are combined by priority".to_owned(), "take it out, or write combine(\"sum\", ...)")
         }
         ("learner", key) if combines && !matches!(key, "temperature_end" | "kind") => {

@@ -3,10 +3,10 @@
 use std::sync::atomic::AtomicBool;
 
 use engine::diagnostic::Result;
-use engine::experiment::{Cycle, Ledger, Plan, Step, TestRun, in_parallel, learn_into, test_choices};
+use engine::experiment::{ByState, Cycle, Each, Ledger, Plan, Step, TestRun, in_parallel, learn_into, test_choices};
 use engine::learner::Policy;
 use engine::random::{Random, Stream};
-use engine::robot::SimulatedRobot;
+use engine::robot::Robot;
 
 /// Steps with actions at random.
 const RANDOM_STEPS: u64 = 1_000;
@@ -153,20 +153,20 @@ pub(super) fn drive(
     let recovers: Vec<bool> = plan.behaviour.outline().rules.iter().map(|rule| rule.recover).collect();
     let mut rules = vec![RuleTrial::default(); plan.behaviour.rules().len()];
     let mut kept: Vec<TrialStep> = Vec::with_capacity(steps as usize);
-    let mut watch = |cycle: &Cycle<SimulatedRobot>, step: &Step| {
+    let mut watch = Each(|cycle: &Cycle<_>, step: &Step| {
         if let Some(last) = kept.last_mut() {
             last.next = Some(step.state);
         }
         let Step { state, action, reward, recover, .. } = *step;
         kept.push(TrialStep { state, action, reward, recover, next: None });
         look(cycle, recover, &recovers, &mut rules);
-    };
-    let run = test_choices(&plan, seed, stop, choose, &mut watch)?;
+    });
+    let run = test_choices(&plan, seed, stop, &mut ByState(choose), &mut watch)?;
     Ok(Drive { run, steps: kept, rules })
 }
 
 /// Notes what every rule did in a step.
-fn look(cycle: &Cycle<SimulatedRobot>, recovered: bool, recovers: &[bool], rules: &mut [RuleTrial]) {
+fn look<R: Robot>(cycle: &Cycle<R>, recovered: bool, recovers: &[bool], rules: &mut [RuleTrial]) {
     let (judge, mut forestalled) = (cycle.judge(), false);
     for (index, (rule, fired)) in rules.iter_mut().zip(cycle.fired()).enumerate() {
         rule.reached += u64::from(!forestalled);
@@ -205,7 +205,7 @@ fn learning(plan: &Plan, stop: &AtomicBool) -> Result<(Vec<TrialStep>, Vec<RuleT
     let mut plan = plan.clone();
     plan.settings.run.steps = LEARNING_STEPS;
     let mut ledger = Ledger::new(&plan, LEARNING_STEPS);
-    let learned = learn_into(&plan, SEED, stop, &|_| (), &mut ledger)?.whole()?;
+    let learned = learn_into(&plan, SEED, stop, &|_| (), &mut ledger)?;
     let mut rules = vec![RuleTrial::default(); plan.behaviour.rules().len()];
     let recovers: Vec<bool> = plan.behaviour.outline().rules.iter().map(|rule| rule.recover).collect();
     let mut steps: Vec<TrialStep> = Vec::with_capacity(ledger.len());

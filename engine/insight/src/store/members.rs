@@ -7,25 +7,28 @@ use super::read_stored;
 use engine::diagnostic::{Diagnostic, Result, SourceText, printable};
 use engine::experiment::{Member, Plan};
 
-/// Reads every policy that the plan's script names, in its order.
+/// The plan with every policy that its script names, in its order; the plan itself if it learns.
 ///
 /// # Errors
 /// If one is missing or damaged, or was learned with another grid shape or other actions; each points at its call.
-pub fn load_members(plan: &Plan) -> Result<Vec<Member>> {
+pub fn with_policies(plan: Plan) -> Result<Plan> {
     let policies = plan.settings.policies.iter().enumerate();
-    policies.map(|(index, policy)| member(plan, index, &find(plan, index, &policy.path)?)).collect()
+    let members = policies.map(|(index, policy)| member(&plan, index, &find(&plan, index, &policy.path)?));
+    let members = members.collect::<Result<_>>()?;
+    Ok(plan.with_members(members))
 }
 
-/// The same from texts that are at hand: those that a stored run or a pack holds.
+/// The plan with policies from texts that are at hand: those that a stored run or a pack holds.
 ///
 /// # Errors
-/// As [`load_members`], and if there are not as many texts as policies.
-pub fn members_from_texts(plan: &Plan, texts: Vec<SourceText>) -> Result<Vec<Member>> {
+/// As [`with_policies`], and if there are not as many texts as policies.
+pub fn with_policy_texts(plan: Plan, texts: &[SourceText]) -> Result<Plan> {
     if texts.len() != plan.settings.policies.len() {
         let message = format!("the run holds {} of {} policies", texts.len(), plan.settings.policies.len());
         return Diagnostic::new("E-RUN-FILE", message).help("run the behaviour again").fail();
     }
-    texts.iter().enumerate().map(|(index, text)| member(plan, index, text)).collect()
+    let members = texts.iter().enumerate().map(|(index, text)| member(&plan, index, text)).collect::<Result<_>>()?;
+    Ok(plan.with_members(members))
 }
 
 fn member(plan: &Plan, index: usize, source: &SourceText) -> Result<Member> {
@@ -39,7 +42,7 @@ fn member(plan: &Plan, index: usize, source: &SourceText) -> Result<Member> {
         let message = format!("policy \"{}\": {}{}", printable(name), error.message, line.unwrap_or_default());
         wrong(plan, index, message, "this policy", "learn its behaviour again")
     })?;
-    stored.suits(&plan.settings, plan.grid()?.states()).map_err(|[own, wanted]| {
+    stored.suits(&plan.settings, &*plan.state_map()?).map_err(|[own, wanted]| {
         let message = format!("policy \"{}\" was learned with {own}, this script has {wanted}", printable(name));
         let path = printable(&source.path.display().to_string());
         let help = "learn it with the grid shape and the actions of this script, or give this script its own";

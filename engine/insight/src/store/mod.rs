@@ -1,14 +1,17 @@
 //! Files that a run leaves and that a later command reads.
 
+mod filter_entry;
 mod log;
 mod members;
+mod parts;
 mod policy_file;
 mod run_file;
 
-pub use log::{LOG_FILE, MAGIC, RecordedRun, RunLog, read_log};
-pub use members::{load_members, members_from_texts, policy_files};
-pub use policy_file::{StoredPolicy, policy_from_toml, policy_to_toml};
-pub use run_file::{Decider, StoredRun, run_to_toml};
+pub use log::{LOG_FILE, MAGIC, RecordedRun, log_to_bytes, read_log};
+pub use members::{policy_files, with_policies, with_policy_texts};
+pub use parts::{RUN_FILE, SUMMARY_FILE};
+pub use policy_file::{POLICY_FILE, StoredPolicy, policy_from_toml, policy_to_toml};
+pub use run_file::{StoredRun, run_to_toml};
 
 use engine::diagnostic::{Diagnostic, Result, SourceText};
 use std::path::Path;

@@ -2,15 +2,19 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::run_file::FilterEntry;
+use super::filter_entry::FilterEntry;
+use super::parts::{belongs, sha256_of};
 use super::toml_error;
 use engine::diagnostic::{Diagnostic, Result, SourceText};
+use engine::experiment::Plan;
 use engine::filter::Catalogue;
 use engine::geometry::Twist;
 use engine::learner::{Policy, PolicyRow};
 use engine::settings::{FilterSettings, GridSettings, Settings};
-use engine::state::MAX_STATES;
+use engine::state::{MAX_STATES, StateMap};
 
+/// The name of the file in a run's folder.
+pub const POLICY_FILE: &str = "policy.toml";
 const FORMAT: u32 = 2;
 
 #[derive(Deserialize)]
@@ -23,6 +27,9 @@ struct FormatLine {
 struct PolicyFile {
     format: u32,
     behaviour: String,
+    /// SHA-256 of the `run.toml` that it was learned under; absent where there is none, as in a pack.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    run_sha256: Option<String>,
     rows: u64,
     columns: u64,
     occupied: f64,
@@ -58,15 +65,23 @@ pub struct StoredPolicy {
     pub actions: Vec<Twist>,
     /// What it learned.
     pub policy: Policy,
+    /// SHA-256 of the `run.toml` of the run that learned it, if it names one.
+    pub run_sha256: Option<String>,
     /// Its filter chain as it was written, digests included.
     pub(super) entries: Vec<FilterEntry>,
 }
 
-/// The text of `policy.toml`; states that were never visited are left out.
+/// The text of `policy.toml`; states that were never visited are left out. `run` is the text of the `run.toml` beside it.
 ///
 /// # Errors
 /// Never in practice: only if the table cannot be written as TOML.
-pub fn policy_to_toml(behaviour: &str, settings: &Settings, filters: &Catalogue, policy: &Policy) -> Result<String> {
+pub fn policy_to_toml(
+    behaviour: &str,
+    settings: &Settings,
+    filters: &Catalogue,
+    policy: &Policy,
+    run: Option<&str>,
+) -> Result<String> {
     let state = policy.rows().iter().enumerate().filter_map(|(index, row)| {
         let row = row.as_ref()?;
         let best = policy.best(index)?.0;
@@ -75,6 +90,7 @@ pub fn policy_to_toml(behaviour: &str, settings: &Settings, filters: &Catalogue,
     let file = PolicyFile {
         format: FORMAT,
         behaviour: behaviour.to_owned(),
+        run_sha256: run.map(sha256_of),
         rows: settings.grid.rows,
         columns: settings.grid.columns,
         occupied: settings.grid.occupied,
@@ -116,6 +132,7 @@ impl StoredPolicy {
         }
         Ok(Self {
             behaviour: file.behaviour,
+            run_sha256: file.run_sha256,
             filters: file.filter.iter().map(FilterEntry::settings).collect(),
             entries: file.filter,
             grid,
@@ -124,12 +141,12 @@ impl StoredPolicy {
         })
     }
 
-    /// Whether it suits the grid shape, of so many states, and the actions of these settings.
+    /// Whether it suits the grid shape, the states of the map and the actions of these settings.
     ///
     /// # Errors
     /// What differs: its own value, then the settings'.
-    pub fn suits(&self, settings: &Settings, states: usize) -> std::result::Result<(), [String; 2]> {
-        let (own, grid) = (&self.grid, &settings.grid);
+    pub fn suits(&self, settings: &Settings, map: &dyn StateMap) -> std::result::Result<(), [String; 2]> {
+        let (own, grid, states) = (&self.grid, &settings.grid, map.states());
         let shape = |rows: u64, columns: u64| format!("a grid of {rows}x{columns}");
         let fill = |fill: bool| format!("a grid {} column fill", if fill { "with" } else { "without" });
         if (own.rows, own.columns) != (grid.rows, grid.columns) {
@@ -155,16 +172,30 @@ impl StoredPolicy {
     }
 }
 
-/// Reads `policy.toml` for a plan with these settings and so many states.
+/// Reads the text of a `policy.toml` for a plan.
 ///
 /// # Errors
 /// If the file is damaged, or was learned with another grid or other actions.
-pub fn policy_from_toml(source: &SourceText, settings: &Settings, states: usize) -> Result<Policy> {
+pub fn policy_from_toml(source: &SourceText, plan: &Plan) -> Result<Policy> {
+    fitting(source, &plan.settings, &*plan.state_map()?).map(|stored| stored.policy)
+}
+
+/// The policy of a run's folder, whose `run.toml` has the text `run`.
+///
+/// # Errors
+/// As [`policy_from_toml`], and if the policy belongs to another run.
+pub(super) fn policy_of_run(source: &SourceText, plan: &Plan, run: &SourceText) -> Result<Policy> {
+    let stored = fitting(source, &plan.settings, &*plan.state_map()?)?;
+    belongs(source, stored.run_sha256.as_deref(), run)?;
+    Ok(stored.policy)
+}
+
+fn fitting(source: &SourceText, settings: &Settings, map: &dyn StateMap) -> Result<StoredPolicy> {
     let stored = StoredPolicy::parse(source)?;
-    stored.suits(settings, states).map_err(|[own, wanted]| {
+    stored.suits(settings, map).map_err(|[own, wanted]| {
         unfit(source, &format!("was learned with {own}, this run has {wanted}"), "learn the behaviour again")
     })?;
-    Ok(stored.policy)
+    Ok(stored)
 }
 
 fn unfit(source: &SourceText, message: &str, help: &str) -> Box<Diagnostic> {
@@ -175,6 +206,12 @@ fn unfit(source: &SourceText, message: &str, help: &str) -> Box<Diagnostic> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use engine::state::{Grid, GridMap};
+
+    fn read(source: &SourceText, settings: &Settings) -> Result<Policy> {
+        let grid = Grid::new(&settings.grid, 160, 120).unwrap();
+        fitting(source, settings, &GridMap::new(&settings.grid, grid)).map(|stored| stored.policy)
+    }
 
     fn policy() -> Policy {
         let values: Vec<f64> = (0..14).map(|action| -0.1 - f64::from(action) / 3.0).collect();
@@ -186,8 +223,8 @@ mod tests {
     #[test]
     fn a_policy_is_read_back_bit_for_bit() {
         let settings = Settings::default();
-        let text = policy_to_toml("wall", &settings, &Catalogue::linked_in(), &policy()).unwrap();
-        let read = policy_from_toml(&SourceText::new("policy.toml", text), &settings, 64).unwrap();
+        let text = policy_to_toml("wall", &settings, &Catalogue::linked_in(), &policy(), None).unwrap();
+        let read = read(&SourceText::new("policy.toml", text), &settings).unwrap();
         assert_eq!(read, policy());
     }
 
@@ -198,7 +235,7 @@ mod tests {
         settings.filters = vec![FilterSettings { name: "colour".to_owned(), parameters }];
         let source = SourceText::new(
             "policy.toml",
-            policy_to_toml("wall", &settings, &Catalogue::linked_in(), &policy()).unwrap(),
+            policy_to_toml("wall", &settings, &Catalogue::linked_in(), &policy(), None).unwrap(),
         );
         let mut read = StoredPolicy::parse(&source).unwrap().filters;
         read[0].parameters.sort_by_key(|(name, _)| std::cmp::Reverse(name.clone()));
@@ -217,23 +254,23 @@ mod tests {
         let mut settings = Settings::default();
         let source = SourceText::new(
             "policy.toml",
-            policy_to_toml("wall", &settings, &Catalogue::linked_in(), &policy()).unwrap(),
+            policy_to_toml("wall", &settings, &Catalogue::linked_in(), &policy(), None).unwrap(),
         );
         settings.grid.rows = 4;
-        assert!(policy_from_toml(&source, &settings, 125).unwrap_err().message.contains("a grid of 3x3"));
+        assert!(read(&source, &settings).unwrap_err().message.contains("a grid of 3x3"));
         settings.grid.rows = 3;
         settings.actions.pop();
-        let error = policy_from_toml(&source, &settings, 64).unwrap_err();
+        let error = read(&source, &settings).unwrap_err();
         assert!(error.message.contains("with 14 actions, this run has 13 actions"), "{}", error.message);
     }
 
     #[test]
     fn damage_is_an_error_and_not_a_guess() {
         let settings = Settings::default();
-        let text = policy_to_toml("wall", &settings, &Catalogue::linked_in(), &policy()).unwrap();
+        let text = policy_to_toml("wall", &settings, &Catalogue::linked_in(), &policy(), None).unwrap();
         for damaged in [text.replace("index = 5", "index = 64"), text.replace("-0.1,", "nan,"), text[..200].to_owned()]
         {
-            assert!(policy_from_toml(&SourceText::new("policy.toml", damaged), &settings, 64).is_err());
+            assert!(read(&SourceText::new("policy.toml", damaged), &settings).is_err());
         }
     }
 }

@@ -1,6 +1,5 @@
 //! `run.toml`: all that is needed to do a run again, script and world included.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -8,15 +7,18 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use toml::Table;
 
-use super::members::members_from_texts;
-use super::{policy_from_toml, read_stored, toml_error};
-use engine::diagnostic::{Diagnostic, Result, SourceText, printable};
-use engine::experiment::{Leg, Member, Plan};
+use super::filter_entry::FilterEntry;
+use super::members::with_policy_texts;
+use super::parts::{RUN_FILE, check_parts};
+use super::policy_file::{POLICY_FILE, policy_of_run};
+use super::{read_stored, toml_error};
+use engine::diagnostic::{Diagnostic, Result, SourceText};
+use engine::experiment::{Decider, Leg, Plan};
 use engine::filter::Catalogue;
 use engine::geometry::Twist;
-use engine::learner::{Carry, Policy};
+use engine::learner::Carry;
 use engine::reward::Behaviour;
-use engine::settings::{FilterSettings, SETTINGS, Settings, Value, apply};
+use engine::settings::{SETTINGS, Settings, Value, apply};
 use engine::world::Layout;
 
 const FORMAT: u32 = 1;
@@ -56,52 +58,6 @@ struct LegEntry {
     script: TextEntry,
 }
 
-/// A filter stage with the parameters that were set.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct FilterEntry {
-    name: String,
-    /// The digest of the file that the filter came from; none for those linked in.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    sha256: Option<String>,
-    parameters: BTreeMap<String, f64>,
-}
-
-impl FilterEntry {
-    pub(super) fn new(filter: &FilterSettings, filters: &Catalogue) -> Self {
-        let sha256 = filters.find(&filter.name).ok().and_then(|entry| entry.sha256.clone());
-        Self { name: filter.name.clone(), sha256, parameters: filter.parameters.iter().cloned().collect() }
-    }
-
-    /// Refuses another file of the same name than was used then.
-    pub(super) fn check(&self, filters: &Catalogue) -> Result<()> {
-        let found = filters.find(&self.name).map_err(|mut error| {
-            if self.sha256.is_some() && error.code == "E-FILTER-SETTING" {
-                error.help = Some("the run used it from a folder; give that folder: --filter-dir DIR".to_owned());
-            }
-            error
-        })?;
-        if found.sha256 == self.sha256 {
-            return Ok(());
-        }
-        let digest = |sha256: &Option<String>| {
-            sha256.as_ref().map_or("linked in".to_owned(), |sha256| format!("sha256:{sha256}"))
-        };
-        let message = format!(
-            "filter '{}' is not the one that was used: then {}, now {}",
-            printable(&self.name),
-            digest(&self.sha256),
-            digest(&found.sha256)
-        );
-        Diagnostic::new("E-RUN-FILTER", message).help("give the folder of that filter: --filter-dir DIR").fail()
-    }
-
-    pub(super) fn settings(&self) -> FilterSettings {
-        let parameters = self.parameters.iter().map(|(key, value)| (key.clone(), *value)).collect();
-        FilterSettings { name: self.name.clone(), parameters }
-    }
-}
-
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct TextEntry {
@@ -129,11 +85,11 @@ fn sha256(text: &str) -> String {
     Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The text of `run.toml`; `members` are the policies of a combination, none for a behaviour that learns.
+/// The text of `run.toml`.
 ///
 /// # Errors
 /// Never in practice: only if the settings cannot be written as TOML.
-pub fn run_to_toml(plan: &Plan, members: &[Member], seed: u64) -> Result<String> {
+pub fn run_to_toml(plan: &Plan, seed: u64) -> Result<String> {
     let settings = &plan.settings;
     let legs = plan.earlier.iter().map(|leg| LegEntry {
         steps: leg.steps,
@@ -151,7 +107,7 @@ pub fn run_to_toml(plan: &Plan, members: &[Member], seed: u64) -> Result<String>
         settings: settings_table(settings),
         script: TextEntry::new(plan.behaviour.source()),
         world: TextEntry::new(&plan.layout.source),
-        policy: members.iter().map(|member| TextEntry::new(&member.source)).collect(),
+        policy: plan.members.iter().map(|member| TextEntry::new(&member.source)).collect(),
         leg: legs.collect(),
     };
     toml::to_string_pretty(&file)
@@ -176,20 +132,12 @@ fn settings_table(settings: &Settings) -> Table {
 
 /// A run read back from its folder.
 pub struct StoredRun {
-    /// The plan as it was, with its own world.
+    /// The plan as it was, with its own world and, if it combines policies, with them.
     pub plan: Plan,
     /// The seed.
     pub seed: u64,
     /// What decides.
     pub decider: Decider,
-}
-
-/// What decides in a stored run.
-pub enum Decider {
-    /// The policy that the run learned.
-    Learned(Policy),
-    /// The policies that it combined.
-    Combined(Vec<Member>),
 }
 
 impl StoredRun {
@@ -206,7 +154,7 @@ impl StoredRun {
     /// # Errors
     /// As [`StoredRun::load`], and if a filter is missing or another than it was.
     pub fn load_with(folder: &Path, filters: Arc<Catalogue>) -> Result<Self> {
-        let source = read_stored(&folder.join("run.toml"))?;
+        let source = read_stored(&folder.join(RUN_FILE))?;
         let file: RunFile = toml::from_str(&source.text).map_err(|error| toml_error(&source, &error))?;
         if file.format != if file.leg.is_empty() { FORMAT } else { FORMAT_OF_LEGS } {
             let message = format!(
@@ -238,14 +186,14 @@ impl StoredRun {
         };
         let legs = file.leg.iter().map(leg).collect::<Result<Vec<_>>>()?;
         let plan = plan.after(legs);
-        let decider = if plan.settings.policies.is_empty() {
-            let states = plan.grid()?.states();
-            let policy = read_stored(&folder.join("policy.toml"))?;
-            Decider::Learned(policy_from_toml(&policy, &plan.settings, states)?)
-        } else {
-            let texts = file.policy.iter().map(|policy| policy.check(&source)).collect::<Result<Vec<_>>>()?;
-            Decider::Combined(members_from_texts(&plan, texts)?)
-        };
+        check_parts(folder, &source)?;
+        if plan.learns() {
+            let policy = read_stored(&folder.join(POLICY_FILE))?;
+            let decider = Decider::Learned(policy_of_run(&policy, &plan, &source)?);
+            return Ok(Self { plan, seed: file.seed, decider });
+        }
+        let texts = file.policy.iter().map(|policy| policy.check(&source)).collect::<Result<Vec<_>>>()?;
+        let (plan, decider) = (with_policy_texts(plan, &texts)?, Decider::Combined);
         Ok(Self { plan, seed: file.seed, decider })
     }
 }

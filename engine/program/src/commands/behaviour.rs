@@ -4,7 +4,7 @@ use std::path::Path;
 
 use engine::diagnostic::Result;
 use engine::experiment::{Overrides, Plan};
-use insight::store::load_members;
+use insight::store::with_policies;
 use pack::{Locked, PACK_ENDING, Pack, PackName, Runnable, draft};
 
 use super::pack::places::{Places, signature_of};
@@ -22,13 +22,13 @@ pub(super) fn open(
     allow_unsigned: bool,
 ) -> Result<Runnable> {
     let runnable = open_to_look(argument, overrides, filters, allow_unsigned)?;
-    if !runnable.members.is_empty() || runnable.plan.settings.policies.is_empty() {
+    if !runnable.plan.members.is_empty() {
         return Ok(runnable);
     }
-    Ok(Runnable { members: load_members(&runnable.plan)?, ..runnable })
+    Ok(Runnable { plan: with_policies(runnable.plan)?, ..runnable })
 }
 
-/// The same without the policies that a script combines, which may not have been learned yet.
+/// The behaviour that an argument means, without the policies that a script combines, which may not have been learned yet.
 pub(super) fn open_to_look(
     argument: &Path,
     overrides: &Overrides,
@@ -39,7 +39,7 @@ pub(super) fn open_to_look(
         return pack.plan(&depends, overrides, sources(filters)?);
     }
     let plan = Plan::load(argument, overrides, || catalogue(filters))?;
-    Ok(Runnable { plan, members: Vec::new(), unpacked: None })
+    Ok(Runnable { plan, unpacked: None })
 }
 
 /// The pack that an argument means, and what it builds on; nothing if it means something else.

@@ -5,11 +5,12 @@ use std::path::Path;
 
 use engine::diagnostic::{Diagnostic, Kind, Result, all_codes, code_page, excerpt, nearest_name, printable};
 use engine::experiment::{Phase, Plan, Playback, RuleReasons, StepReasons};
+use engine::robot::Robot;
+use insight::folder::create_folder;
 use insight::report::{FrameData, FramePanel, Picture, frame};
 use insight::store::{RecordedRun, StoredRun};
 use serde::Serialize;
 
-use super::folder::create;
 use super::sources::catalogue;
 use super::words::{fact, icon, motion, short};
 use crate::cli::ExplainArguments;
@@ -49,7 +50,7 @@ pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::r
         true => (Phase::Test, &recorded.log.test, "test"),
     };
     let out = arguments.out.as_deref().unwrap_or(Path::new(&arguments.topic));
-    create(out)?;
+    create_folder(out)?;
     let mut playback = Playback::new(plan, *seed, phase, ledger)?;
     playback.seek(step)?;
     let stem = if arguments.test { format!("test-step-{step}") } else { format!("step-{step}") };
@@ -91,7 +92,8 @@ fn code(code: &str, console: &mut Console) -> std::result::Result<u8, ConsoleErr
 
 /// Camera, each filter, grid.
 fn draw(plan: &Plan, playback: &Playback<'_>, title: &str) -> Result<Picture> {
-    let (cycle, image) = (playback.cycle(), &playback.cycle().robot().photograph());
+    let cycle = playback.cycle();
+    let image = &cycle.robot().photograph().unwrap_or_else(|| cycle.observation().image.clone());
     let mut panels = vec![FramePanel::image("camera", image)];
     panels.extend(cycle.stages().map(|(filter, pixels)| FramePanel {
         name: filter.name,
@@ -125,7 +127,7 @@ fn print(console: &mut Console, plan: &Plan, report: &Report) -> std::result::Re
         short(reasons.time_s)
     ))?;
     let how = match reasons.explored {
-        _ if !plan.settings.policies.is_empty() => "",
+        _ if !plan.learns() => "",
         true => " (tried, not the best one known)",
         false => " (the best one known)",
     };

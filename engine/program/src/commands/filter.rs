@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use engine::diagnostic::{Diagnostic, Kind, Result, printable};
+use engine::experiment::Decider;
 use engine::experiment::{Overrides, Plan};
 use engine::filter::{Catalogue, Chain};
 use engine::learner::Policy;
@@ -11,12 +12,12 @@ use engine::sensors::observation::Image;
 use engine::sensors::{load_photograph, photograph_files};
 use engine::settings::Settings;
 use engine::state::Grid;
+use insight::folder::create_folder;
 use insight::report::{FrameData, FramePanel, Picture, frame};
-use insight::store::{Decider, StoredRun};
+use insight::store::StoredRun;
 use pack::Runnable;
 
 use super::behaviour::open_to_look;
-use super::folder::create;
 use crate::cli::FilterArguments;
 use crate::console::{Console, ConsoleError};
 
@@ -39,9 +40,9 @@ struct Seen {
 pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
     let overrides = Overrides { world: None, steps: None, test_steps: None, set: arguments.set.clone() };
     // A pack's filters stand in a folder that lives as long as it does.
-    let Runnable { plan, unpacked: _unpacked, .. } =
+    let Runnable { plan, unpacked: _unpacked } =
         open_to_look(&arguments.behaviour, &overrides, &arguments.filters, false)?;
-    if !plan.settings.policies.is_empty() {
+    if !plan.learns() {
         let message = format!("'{}' combines policies, and each sees with filters of its own", plan.behaviour.name());
         let error = Diagnostic::new("E-COMBINES", message).help("give the script of one of its policies");
         return Err(Box::new(error).into());
@@ -49,7 +50,7 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
     let met = arguments.run.as_deref().map(|run| met(run, &plan)).transpose()?;
     let files = photograph_files(&arguments.image)?;
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(plan.behaviour.name()).join("filter"));
-    create(&out)?;
+    create_folder(&out)?;
     keep_photographs(&files, &out)?;
     let (mut chain, mut grid) = (plan.chain()?, plan.grid()?);
     let mut names = Vec::with_capacity(files.len());

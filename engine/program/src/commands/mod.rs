@@ -3,14 +3,12 @@
 mod behaviour;
 pub(crate) mod bench;
 pub(crate) mod check;
-mod combine;
 pub(crate) mod explain;
 pub(crate) mod filter;
-mod folder;
 pub(crate) mod new;
 pub(crate) mod pack;
-mod page;
 pub(crate) mod plugins;
+mod print;
 pub(crate) mod reference;
 pub(crate) mod replay;
 pub(crate) mod reproduce;

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use engine::diagnostic::{Diagnostic, Kind, Result, printable};
 use engine::filter::LINKED_IN;
+use insight::folder::create_folder;
 use insight::report::write_atomic;
 
-use super::folder::create;
 use crate::cli::{NewArguments, NewCommand};
 use crate::console::{Console, ConsoleError};
 
@@ -32,7 +32,7 @@ pub(crate) fn run(arguments: &NewArguments, console: &mut Console) -> std::resul
     check(name, &folder)?;
     for (path, text) in TEMPLATE {
         let path = folder.join(path);
-        create(path.parent().unwrap_or(&folder))?;
+        create_folder(path.parent().unwrap_or(&folder))?;
         write_atomic(&path, fill(text, name).as_bytes())?;
     }
     console.line(&format!("wrote the filter '{name}' to {}", folder.display()))?;

@@ -3,12 +3,9 @@
 use std::sync::atomic::Ordering;
 
 use engine::diagnostic::{Diagnostic, Kind, Result, printable};
-use engine::experiment::{
-    Cycle, Ledger, Overrides, Phase, Plan, Playback, Record, RuleScore, Step, learn_into, test_combined, test_into,
-};
+use engine::experiment::{Decider, Ledger, Overrides, Phase, Plan, Playback, Record, RuleScore, RunLog, run_seed};
 use engine::learner::Carry;
-use engine::robot::SimulatedRobot;
-use insight::store::{Decider, RecordedRun, RunLog, StoredRun};
+use insight::store::{RecordedRun, StoredRun};
 use serde::Serialize;
 
 use super::sources::catalogue;
@@ -253,31 +250,24 @@ fn verify(recorded: &RecordedRun, console: &mut Console) -> std::result::Result<
     };
     let plan = plan.clone().with_changes(&steps)?;
     let mut again = RunLog::new(&plan);
-    let state_hash = match &stored.decider {
-        Decider::Learned(policy) => {
-            let learned = learn_into(&plan, seed, &stop, &|_| (), &mut again.learning)?;
-            if summary.is_some() {
-                test_into(&plan, &learned.policy, seed, &stop, &mut again.test)?;
-            }
-            if stop.load(Ordering::Relaxed) {
-                return Ok(INTERRUPTED);
-            }
-            compare(log, &again)?;
-            if learned.policy != *policy {
-                return Err(Box::new(differs("the table in policy.toml")).into());
-            }
-            learned.state_hash
+    let (learned, state_hash) = match run_seed(&plan, seed, &stop, &|_| (), &mut again) {
+        Ok(run) => (run.learned, run.summary.state_hash),
+        // A run that a failure ended fails again, at the same step.
+        Err(broken) if summary.is_none() => {
+            let state_hash = broken.learned.as_ref().map_or_else(String::new, |learned| learned.state_hash.clone());
+            (broken.learned, state_hash)
         }
-        Decider::Combined(members) => {
-            let mut keep = |cycle: &Cycle<SimulatedRobot>, step: &Step| again.test.add(cycle, step, false);
-            let tested = test_combined(&plan, members, seed, &stop, &mut keep)?;
-            if stop.load(Ordering::Relaxed) {
-                return Ok(INTERRUPTED);
-            }
-            compare(log, &again)?;
-            tested.run.state_hash
-        }
+        Err(broken) => return Err(broken.error.into()),
     };
+    if stop.load(Ordering::Relaxed) {
+        return Ok(INTERRUPTED);
+    }
+    compare(log, &again)?;
+    if let (Decider::Learned(policy), Some(learned)) = (&stored.decider, &learned)
+        && learned.policy != *policy
+    {
+        return Err(Box::new(differs("the table in policy.toml")).into());
+    }
     if summary.as_ref().is_some_and(|summary| state_hash != summary.state_hash) {
         return Err(Box::new(differs("state_hash in summary.json")).into());
     }

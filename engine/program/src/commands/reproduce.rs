@@ -5,10 +5,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use engine::diagnostic::{Diagnostic, Kind, nearest_name, printable};
+use insight::folder::{create_folder, write_json};
 use insight::report::write_atomic;
 use paper::{CLAIMS, Campaign, Options, Reproduction, Verdict, figures, markdown, page, rows};
 
-use super::folder::{create, write_json};
 use super::stop::{INTERRUPTED, on_ctrl_c};
 use crate::cli::ReproduceArguments;
 use crate::console::{Console, ConsoleError};
@@ -18,7 +18,7 @@ pub(crate) fn run(arguments: &ReproduceArguments, console: &mut Console) -> Resu
     for id in &arguments.only {
         known(id)?;
     }
-    create(&arguments.out)?;
+    create_folder(&arguments.out)?;
     let campaign = Campaign::new(Options {
         scripts: arguments.scripts.clone(),
         seed: arguments.seed,

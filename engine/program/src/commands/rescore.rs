@@ -7,11 +7,11 @@ use engine::diagnostic::{Diagnostic, Kind, Result, printable};
 use engine::experiment::{Plan, Rescored, RuleChange, RuleScore, plan_with_rules_of, rescore};
 use engine::learner::Policy;
 use engine::reward::Behaviour;
+use insight::folder::{create_folder, write_json};
 use insight::report::{PolicyDiffData, PolicyState, StateChange, policy_diff};
 use insight::store::{RecordedRun, StoredRun};
 use serde::Serialize;
 
-use super::folder::{create, write_json};
 use super::sources::catalogue;
 use super::words::{icon, motion, short, signed};
 use crate::cli::RescoreArguments;
@@ -128,7 +128,7 @@ fn entry(plan: &Plan, rescored: &Rescored, state: usize) -> Result<Option<StateE
 }
 
 fn write(out: &Path, plan: &Plan, report: &Report) -> Result<()> {
-    create(out)?;
+    create_folder(out)?;
     write_json(&out.join("rescore.json"), report)?;
     let state = |entry: &StateEntry, choice: &Choice| PolicyState {
         state: entry.state,

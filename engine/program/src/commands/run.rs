@@ -1,17 +1,17 @@
-//! `engine run`: learn, test the frozen policy, draw.
+//! `engine run`: learn or combine, test, draw.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use engine::diagnostic::{Diagnostic, Kind, Result};
-use engine::experiment::{Overrides, Phase, Plan, Progress, Spread, Summary, in_parallel, learn_into, test_into};
+use engine::diagnostic::{Diagnostic, Result};
+use engine::experiment::{Overrides, Phase, Plan, Progress, RunLog, Spread, WINDOW_STEPS, in_parallel, run_seed};
+use insight::folder::{RunFolder, SeedResult};
 use insight::record::{self, record};
-use insight::store::RunLog;
 use pack::Runnable;
 
 use super::check;
-use super::folder::{RunFolder, SeedResult};
+use super::print::{one_line, print_many, print_one};
 use super::stop::{INTERRUPTED, on_ctrl_c};
 use crate::cli::RunArguments;
 use crate::console::{Console, ConsoleError};
@@ -19,42 +19,29 @@ use crate::console::{Console, ConsoleError};
 pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
     let (world, set) = (arguments.world.clone(), arguments.set.clone());
     let overrides = Overrides { world, steps: arguments.steps, test_steps: None, set };
-    let Runnable { plan, members, .. } =
+    let Runnable { plan, unpacked: _unpacked } =
         super::behaviour::open(&arguments.behaviour, &overrides, &arguments.filters, arguments.allow_unsigned)?;
     let seeds: Vec<u64> = (0..arguments.seeds).map(|index| arguments.seed.wrapping_add(index)).collect();
-    let path = out(arguments, plan.behaviour.name(), &seeds);
-    if !plan.settings.policies.is_empty() {
-        return super::combine::run(arguments, (&plan, &members), &seeds, &path, console);
-    }
+    check_learning(arguments, &plan)?;
     if let Some(path) = &arguments.record {
         check_record(path, &seeds)?;
     }
-    let folder = RunFolder::create(&path, &plan, &[], arguments.seed)?;
+    let folder = RunFolder::create(&out(arguments, plan.behaviour.name(), &seeds), &plan, &seeds)?;
 
     let stop = on_ctrl_c()?;
     let threads = arguments.threads.unwrap_or(0) as usize;
-    let results = learn_all(&plan, &folder, &seeds, threads, &stop, console)?;
+    let results = run_all(&plan, &folder, &seeds, threads, &stop, console)?;
     let checked = if arguments.check { check::beside_a_run(&plan, threads, &stop, console) } else { None };
     folder.write(&plan, &results, checked.as_ref())?;
     if let (Some(path), [SeedResult { log: Some(log), .. }]) = (&arguments.record, results.as_slice()) {
-        let phases = [(Phase::Learning, &log.learning), (Phase::Test, &log.test)];
-        let recording = record(&plan, arguments.seed, &phases, arguments.record_every, path)?;
-        console.note(&format!(
-            "recorded {} steps and {} images in {} ({} KiB)",
-            recording.steps,
-            recording.images,
-            path.display(),
-            recording.bytes / 1024
-        ));
+        record_run(arguments, &plan, log, path, console)?;
     }
-
-    let interrupted = stop.load(Ordering::Relaxed);
     let good = if let [result] = results.as_slice() {
-        console.json(&result.summary)?;
-        print_one(console, &result.summary)?;
-        result.summary.is_good()
+        console.json(&result.run.summary)?;
+        print_one(console, &result.run.summary)?;
+        result.run.summary.is_good()
     } else {
-        let spread = Spread::new(results.iter().map(|result| result.summary.clone()).collect());
+        let spread = Spread::new(results.iter().map(|result| result.run.summary.clone()).collect());
         console.json(&spread)?;
         print_many(console, &spread)?;
         2 * spread.seeds.iter().filter(|seed| seed.is_good()).count() > spread.seeds.len()
@@ -63,11 +50,35 @@ pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::resul
         check::print_short(console, report)?;
     }
     console.line(&format!("results:   {}", folder.path().display()))?;
-    if interrupted {
-        console.note("stopped by Ctrl-C; what was learned until then is kept");
+    if stop.load(Ordering::Relaxed) {
+        let done = if plan.learns() { "learned" } else { "tested" };
+        console.note(&format!("stopped by Ctrl-C; what was {done} until then is kept"));
         return Ok(INTERRUPTED);
     }
     Ok(u8::from(!good))
+}
+
+/// Refuses what only a behaviour that learns can do.
+fn check_learning(arguments: &RunArguments, plan: &Plan) -> Result<()> {
+    if plan.learns() || arguments.steps.is_none() {
+        return Ok(());
+    }
+    let message = format!("'{}' combines policies: it takes no steps of learning", plan.behaviour.name());
+    let help = "leave out --steps; --set run.test_steps=N sets the length of the test";
+    Diagnostic::new("E-COMBINES", message).help(help).fail()
+}
+
+fn record_run(arguments: &RunArguments, plan: &Plan, log: &RunLog, path: &Path, console: &Console) -> Result<()> {
+    let phases = [(Phase::Learning, &log.learning), (Phase::Test, &log.test)];
+    let recording = record(plan, arguments.seed, &phases, arguments.record_every, path)?;
+    console.note(&format!(
+        "recorded {} steps and {} images in {} ({} KiB)",
+        recording.steps,
+        recording.images,
+        path.display(),
+        recording.bytes / 1024
+    ));
+    Ok(())
 }
 
 fn check_record(path: &Path, seeds: &[u64]) -> Result<()> {
@@ -89,7 +100,7 @@ fn out(arguments: &RunArguments, name: &str, seeds: &[u64]) -> PathBuf {
     Path::new("runs").join(name).join(folder)
 }
 
-fn learn_all(
+fn run_all(
     plan: &Plan,
     folder: &RunFolder,
     seeds: &[u64],
@@ -100,7 +111,7 @@ fn learn_all(
     let bar = console.bar(plan.settings.run.steps * seeds.len() as u64);
     let plain = bar.is_hidden() && seeds.len() == 1;
     let report = |progress: Progress| {
-        bar.inc(engine::experiment::WINDOW_STEPS);
+        bar.inc(WINDOW_STEPS);
         bar.set_message(format!("reinforcement per 400: {}", progress.reinforcement));
         if plain {
             console.note(&format!(
@@ -111,77 +122,23 @@ fn learn_all(
     };
     let results = in_parallel(seeds, threads, |seed| {
         let (started, mut log) = (Instant::now(), RunLog::new(plan));
-        let mut learned = learn_into(plan, seed, stop, &report, &mut log.learning)?;
-        if let Some(fault) = learned.fault.take() {
-            let kept = folder.keep(plan, &learned, &log, seeds.len() > 1)?;
-            console.note(&format!("what was learned in {} steps is kept in {}", learned.steps, kept.display()));
-            return Err(fault);
+        let mut run = match run_seed(plan, seed, stop, &report, &mut log) {
+            Ok(run) => run,
+            Err(broken) => {
+                if let Some(learned) = &broken.learned {
+                    let kept = folder.keep_broken(plan, learned, &log)?;
+                    console.note(&format!("what was learned in {} steps is kept in {}", learned.steps, kept.display()));
+                }
+                return Err(broken.error);
+            }
+        };
+        run.summary = run.summary.timed(started.elapsed().as_secs_f64());
+        if plan.learns() && bar.is_hidden() && !plain {
+            console.note(&format!("seed {seed}: {}", one_line(&run.summary)));
         }
-        let tested = test_into(plan, &learned.policy, seed, stop, &mut log.test)?;
-        let mut summary = Summary::new(plan, &learned, tested.figures.clone(), started.elapsed().as_secs_f64());
-        summary.log_sha256 = Some(log.sha256());
-        if bar.is_hidden() && !plain {
-            console.note(&format!("seed {seed}: {}", one_line(&summary)));
-        }
-        folder.keep_log(plan, seed, &log, seeds.len() > 1)?;
-        let log = (seeds.len() == 1).then_some(log);
-        Ok(SeedResult { learned, tested, summary, log })
+        folder.keep_log(plan, seed, &log)?;
+        Ok(SeedResult { run, log: (seeds.len() == 1).then_some(log) })
     });
     bar.finish_and_clear();
     results
-}
-
-fn one_line(summary: &Summary) -> String {
-    let learned = summary.learned_at.map_or("not learned".to_owned(), |step| format!("learned at step {step}"));
-    let laps = summary.test.laps.map_or(String::new(), |laps| format!(", {laps:.1} laps"));
-    format!("{learned}; test: {:.1} failures in 1000 steps{laps}", summary.test.failures_per_1000)
-}
-
-fn print_one(console: &mut Console, summary: &Summary) -> std::result::Result<(), ConsoleError> {
-    let Summary { behaviour, world, seed, steps, test, .. } = summary;
-    console.line(&format!(
-        "behaviour: {behaviour} in {world}, seed {seed}, {} steps per second",
-        summary.steps_per_second
-    ))?;
-    let learned = match summary.learned_at {
-        Some(step) => format!("at step {step} of {steps} (four windows of 400 steps with -1 or better)"),
-        None => format!("not within {steps} steps (no four windows of 400 steps with -1 or better)"),
-    };
-    console.line(&format!("learned:   {learned}"))?;
-    super::test::print_figures(console, test)
-}
-
-pub(super) fn print_many(console: &mut Console, spread: &Spread) -> std::result::Result<(), ConsoleError> {
-    let count = spread.seeds.len();
-    console.line(&format!("behaviour: {} in {}, {count} seeds", spread.behaviour, spread.world))?;
-    let combined = spread.seeds.iter().any(|seed| seed.combination.is_some());
-    console.line(&format!(
-        "{}   {} of {count} seeds ({:.0} %)",
-        if combined { "good:   " } else { "learned:" },
-        spread.converged,
-        100.0 * spread.converged as f64 / count as f64
-    ))?;
-    console.line("                        median     worst")?;
-    let step = |step: Option<u64>| step.map_or("never".to_owned(), |step| step.to_string());
-    let (median, worst) = (&spread.median, &spread.worst);
-    let mut row =
-        |name: &str, median: String, worst: String| console.line(&format!("  {name:20}{median:>8}  {worst:>8}"));
-    if !combined {
-        row("learned at step", step(median.learned_at), step(worst.learned_at))?;
-    }
-    row("failures per 1000", format!("{:.1}", median.failures_per_1000), format!("{:.1}", worst.failures_per_1000))?;
-    if let (Some(median), Some(worst)) = (median.laps, worst.laps) {
-        row("laps", format!("{median:.1}"), format!("{worst:.1}"))?;
-    }
-    if let (Some(median), Some(worst)) = (median.prey_distance_m, worst.prey_distance_m) {
-        row("distance to prey, m", format!("{median:.2}"), format!("{worst:.2}"))?;
-    }
-    row("contacts", format!("{:.0}", median.contacts), format!("{:.0}", worst.contacts))?;
-    row("spinning, %", format!("{:.0}", 100.0 * median.spinning), format!("{:.0}", 100.0 * worst.spinning))?;
-    let lost = spread.seeds.iter().filter(|seed| seed.test.does_task == Some(false)).count();
-    if lost > 0 {
-        console
-            .line(&format!("{lost} of {count} seeds avoid punishment but make less than 0.1 m/s along the route"))?;
-    }
-    Ok(())
 }

@@ -84,20 +84,19 @@ fn keep(word: Option<&str>) -> Option<engine::learner::Carry> {
 /// Writes every finished run to a folder.
 #[cfg(feature = "serve")]
 fn finished(out: std::path::PathBuf) -> watch::Finished {
-    use super::folder::{RunFolder, SeedResult};
-    use engine::experiment::Summary;
-    use insight::store::RunLog;
+    use engine::experiment::{RunLog, SeedRun, Summary};
+    use insight::folder::{RunFolder, SeedResult};
     Box::new(move |run, tests, seconds| {
         let (plan, many) = (&run.plan, run.seeds.len() > 1);
-        let Some(first) = run.seeds.first() else { return Ok(()) };
-        let folder = RunFolder::create(&out, plan, &[], first.learned.seed)?;
-        let result = |(seed, tested): (&watch::SeedRun, engine::experiment::TestRun)| {
-            let mut summary =
-                Summary::new(plan, &seed.learned, tested.figures.clone(), seconds / run.seeds.len() as f64);
+        let seeds: Vec<u64> = run.seeds.iter().map(|seed| seed.learned.seed).collect();
+        let folder = RunFolder::create(&out, plan, &seeds)?;
+        let result = |(seed, tested): (&watch::WatchedSeed, engine::experiment::TestRun)| {
             let log = RunLog { learning: (*seed.learning).clone(), test: seed.tested.clone() };
-            summary.log_sha256 = Some(log.sha256());
-            folder.keep_log(plan, seed.learned.seed, &log, many)?;
-            Ok(SeedResult { learned: (*seed.learned).clone(), tested, summary, log: (!many).then_some(log) })
+            let learned = Some((*seed.learned).clone());
+            let summary = Summary::new(plan, seed.learned.seed, learned.as_ref(), &tested);
+            let summary = Summary { log_sha256: Some(log.sha256()), ..summary }.timed(seconds / run.seeds.len() as f64);
+            folder.keep_log(plan, seed.learned.seed, &log)?;
+            Ok(SeedResult { run: SeedRun { learned, tested, summary }, log: (!many).then_some(log) })
         };
         let results = run.seeds.iter().zip(tests).map(result).collect::<engine::diagnostic::Result<Vec<_>>>()?;
         folder.write(plan, &results, None)

@@ -1,6 +1,6 @@
 //! The steps of one phase at a glance: which rule fired when, how often, and what it added.
 
-use crate::SeedRun;
+use crate::WatchedSeed;
 use engine::experiment::{Ledger, Phase, Plan};
 use insight::page::Document;
 
@@ -32,7 +32,7 @@ pub(super) struct Story {
 
 impl Story {
     /// A phase of a seed; the tally of learning counts those steps too that a ledger has no room for.
-    pub(super) fn new(plan: &Plan, document: &Document, seed: &SeedRun, phase: Phase) -> Self {
+    pub(super) fn new(plan: &Plan, document: &Document, seed: &WatchedSeed, phase: Phase) -> Self {
         let (rules, learning) = (document.rules.len(), phase == Phase::Learning);
         let ledger = if learning { &*seed.learning } else { &seed.tested };
         let mut story = Self {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::ink::Ink;
 use super::player::{Answer, Moment, Question};
 use super::story::Story;
-use crate::{SeedRun, Shown, ShownRun};
+use crate::{Shown, ShownRun, WatchedSeed};
 use engine::experiment::{Ledger, Phase, Record};
 use insight::page::Document;
 
@@ -126,7 +126,7 @@ impl View {
         self.shown.run.as_ref().map(|shown| &*shown.document)
     }
 
-    pub(super) fn seed_run(&self) -> Option<&SeedRun> {
+    pub(super) fn seed_run(&self) -> Option<&WatchedSeed> {
         self.shown.run.as_ref()?.run.seeds.get(self.seed)
     }
 
@@ -151,7 +151,7 @@ impl View {
 
     /// Goes to a phase; to learning while there is no test.
     pub(super) fn choose(&mut self, phase: Phase) {
-        let has = |ledger: &dyn Fn(&SeedRun) -> bool| self.seed_run().is_some_and(ledger);
+        let has = |ledger: &dyn Fn(&WatchedSeed) -> bool| self.seed_run().is_some_and(ledger);
         let (learned, tested) = (has(&|seed| !seed.learning.is_empty()), has(&|seed| !seed.tested.is_empty()));
         self.wanted = phase;
         // Combined policies are only tested.

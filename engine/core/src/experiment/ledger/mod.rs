@@ -5,8 +5,10 @@
 
 mod record;
 
-use super::{Cycle, Plan, Step};
-use crate::robot::SimulatedRobot;
+use std::ops::ControlFlow;
+
+use super::{Cycle, Observer, Plan, Step};
+use crate::robot::Robot;
 
 use record::{FIXED_BYTES, first_field};
 pub use record::{Record, RecordShape};
@@ -155,25 +157,25 @@ impl Ledger {
     }
 
     /// Adds the step that the cycle has just done; before any recovery.
-    pub fn add(&mut self, cycle: &Cycle<SimulatedRobot>, step: &Step, explored: bool) {
+    fn add<R: Robot>(&mut self, cycle: &Cycle<R>, step: &Step) {
         self.steps += 1;
         if self.bytes.len() >= self.most {
             return;
         }
-        let (world, facts) = (cycle.robot().world(), cycle.facts());
-        let (body, nearest_beam) = (world.body(), facts.nearest_beam());
+        let (robot, facts) = (cycle.robot(), cycle.facts());
+        let (here, nearest_beam) = (robot.whereabouts().unwrap_or_default(), facts.nearest_beam());
         let record = Record {
             reward: step.reward,
-            pose: body.pose,
-            z_m: body.z_m as f32,
-            prey: world.prey().map(|prey| [prey.x_m as f32, prey.y_m as f32, prey.yaw_rad as f32]),
+            pose: here.pose,
+            z_m: here.z_m as f32,
+            prey: robot.prey().map(|prey| [prey.x_m as f32, prey.y_m as f32, prey.yaw_rad as f32]),
             state: step.state as u32,
             next_state: step.next_state as u32,
             action: step.action as u16,
             recover: step.recover,
             contact: step.contact,
             fallen: facts.fallen,
-            explored,
+            explored: step.explored,
             beam: cycle.fired_beam().map(|beam| beam as u16),
             nearest_beam: nearest_beam as u16,
             nearest_m: facts.ranges_m.get(nearest_beam).copied().unwrap_or(0.0),
@@ -256,5 +258,12 @@ impl Ledger {
             let set = words.get(rule / 8).copied().unwrap_or(0);
             (set >> (rule % 8) & 1 == 1).then_some((rule, value))
         })
+    }
+}
+
+impl<R: Robot> Observer<R> for Ledger {
+    fn stepped(&mut self, cycle: &Cycle<R>, step: &Step) -> ControlFlow<()> {
+        self.add(cycle, step);
+        ControlFlow::Continue(())
     }
 }

@@ -57,7 +57,7 @@ pub(super) fn check(path: &Path, bytes: &[u8]) -> diagnostic::Result<()> {
         if let Some(fault) = fault {
             let message = format!("'{shown}' has {fault}");
             let help = "build it for size (opt-level, strip) and leave out what it does not use";
-            return Diagnostic::new("E-WASM-SIZE", message).help(help).into();
+            return Diagnostic::new("E-WASM-SIZE", message).help(help).fail();
         }
     }
     if code_bytes == 0 {

@@ -73,7 +73,7 @@ fn check_imports(shown: &str, module: &Module) -> Result<()> {
         let message = format!("'{shown}' wants '{name}' from '{from}'");
         let help = "filters may import only env.log(address: i32, length: i32); build without WASI, for \
                     wasm32-unknown-unknown or with clang --target=wasm32";
-        return Diagnostic::new("E-WASM-IMPORT", message).help(help).into();
+        return Diagnostic::new("E-WASM-IMPORT", message).help(help).fail();
     }
     Ok(())
 }

@@ -5,7 +5,7 @@ use crate::geometry::{Isometry3, Pose, Vector3};
 use crate::random::{Random, Stream};
 use crate::sensors::observation::Image;
 use crate::sensors::{Camera, self_test};
-use crate::settings::{CameraSettings, Settings};
+use crate::settings::{CameraSettings, Lens, Settings};
 use crate::world::scene::{Scene, SceneParts, Solid, Texture};
 use filter_api::Format;
 use std::sync::Arc;
@@ -104,7 +104,7 @@ fn a_pinhole_image_is_that_of_one_exact_ray_per_pixel() {
 
 #[test]
 fn a_fisheye_image_is_that_of_one_exact_ray_per_pixel_but_for_edges() {
-    let settings = CameraSettings { lens: "fisheye".to_owned(), ..settings(96, 72, 110.0, 25.0) };
+    let settings = CameraSettings { lens: Lens::Fisheye, ..settings(96, 72, 110.0, 25.0) };
     let focal = 96.0 / 110_f64.to_radians();
     let ray = |axes: &[Vector3; 4], x: f64, y: f64| {
         let radius = (x * x + y * y).sqrt();
@@ -209,7 +209,7 @@ fn a_grey_image_is_the_luma_of_the_image_in_colour() {
         let scene = Arc::new(Scene::new(parts));
         let mut settings = settings(97, 71, 120.0, 25.0);
         settings.noise = [0.0, 2.0, 90.0][round / 3 % 3];
-        settings.lens = if round % 2 == 0 { "pinhole" } else { "fisheye" }.to_owned();
+        settings.lens = if round % 2 == 0 { Lens::Pinhole } else { Lens::Fisheye };
         let (pose, movers) = (random_pose(&mut random), random_solids(&mut random, 2));
         let mut camera = Camera::new(&scene, &settings, 3);
         let (mut colour, mut grey) = (Image::new(0, 0), Image::of(Format::Grey, 0, 0));

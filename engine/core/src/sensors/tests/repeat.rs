@@ -4,7 +4,7 @@ use super::oracle::{random_pose, random_solids, scene};
 use crate::random::{Random, Stream};
 use crate::sensors::observation::{Image, Scan};
 use crate::sensors::{Camera, Laser};
-use crate::settings::Settings;
+use crate::settings::{Lens, Settings};
 use crate::world::scene::{Scene, Texture};
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ fn fingerprint(bytes: impl IntoIterator<Item = u8>) -> u64 {
 }
 
 /// Fingerprints of an image and of a scan after twenty poses.
-fn sensed(lens: &str) -> (u64, u64) {
+fn sensed(lens: Lens) -> (u64, u64) {
     let mut random = Random::new(11, Stream::Test);
     let mut parts = scene(random_solids(&mut random, 12), 13).parts().clone();
     for (index, material) in parts.materials.iter_mut().enumerate() {
@@ -28,7 +28,7 @@ fn sensed(lens: &str) -> (u64, u64) {
     }
     let scene = Arc::new(Scene::new(parts));
     let mut settings = Settings::default();
-    (settings.camera.lens, settings.camera.tilt_deg) = (lens.to_owned(), 20.0);
+    (settings.camera.lens, settings.camera.tilt_deg) = (lens, 20.0);
     settings.laser.tilt_deg = 15.0;
     let (mut camera, mut laser) = (Camera::new(&scene, &settings.camera, 3), Laser::new(&scene, &settings.laser, 3));
     let (mut image, mut scan) = (Image::new(0, 0), Scan { ranges_m: Vec::new() });
@@ -45,6 +45,6 @@ fn sensed(lens: &str) -> (u64, u64) {
 
 #[test]
 fn both_sensors_give_the_recorded_bytes() {
-    assert_eq!(sensed("pinhole"), (5_096_316_319_905_851_907, 7_882_391_037_906_771_012));
-    assert_eq!(sensed("fisheye"), (14_970_386_428_204_561_522, 7_882_391_037_906_771_012));
+    assert_eq!(sensed(Lens::Pinhole), (5_096_316_319_905_851_907, 7_882_391_037_906_771_012));
+    assert_eq!(sensed(Lens::Fisheye), (14_970_386_428_204_561_522, 7_882_391_037_906_771_012));
 }

@@ -25,8 +25,9 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use engine::diagnostic::{Diagnostic, Result};
-use engine::experiment::{Ledger, Plan};
+use engine::experiment::{Ledger, Plan, RunLog};
 
+pub(super) use read::log_names;
 pub use read::read_log;
 pub use stored::RecordedRun;
 
@@ -37,20 +38,8 @@ pub const MAGIC: [u8; 8] = *b"engnlog\n";
 const FORMAT: u32 = 1;
 /// The format of a log with more than one leg.
 const FORMAT_OF_LEGS: u32 = 2;
-/// Records in a chunk; the last of a phase may have fewer.
-const CHUNK_STEPS: usize = 1024;
-const DIGEST_BYTES: usize = 32;
 /// Magic, format, length of the header.
 const PREFIX_BYTES: usize = 16;
-
-/// Every step of a run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RunLog {
-    /// The steps of learning; none for a behaviour that combines policies.
-    pub learning: Ledger,
-    /// The steps of the test.
-    pub test: Ledger,
-}
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -106,76 +95,44 @@ impl RuleEntry {
     }
 }
 
-impl RunLog {
-    /// An empty log with room for the steps of a plan.
-    #[must_use]
-    pub fn new(plan: &Plan) -> Self {
-        let run = &plan.settings.run;
-        let learns = plan.settings.policies.is_empty();
-        let learning = Ledger::new(plan.first_leg(), if learns { plan.first_steps() } else { 0 });
-        Self { learning, test: Ledger::new(plan, run.test_steps) }
+/// The whole file of the log of a run whose `run.toml` has the text `run`.
+///
+/// # Errors
+/// Never in practice: only if the header cannot be written as JSON.
+pub fn log_to_bytes(log: &RunLog, plan: &Plan, seed: u64, run: &str) -> Result<Vec<u8>> {
+    let legs = plan.earlier.iter().zip(log.learning.earlier());
+    let earlier = legs.map(|(leg, records)| LegEntry {
+        record_bytes: records.shape.bytes(),
+        rules: RuleEntry::all(&leg.plan),
+        learning: PhaseEntry { steps: records.steps, records: records.len() },
+    });
+    let header = Header {
+        engine: env!("CARGO_PKG_VERSION").to_owned(),
+        behaviour: plan.behaviour.name().to_owned(),
+        seed,
+        run_sha256: hex(&Sha256::digest(run.as_bytes())),
+        record_bytes: log.learning.shape().bytes(),
+        rules: RuleEntry::all(plan),
+        earlier: earlier.collect(),
+        learning: PhaseEntry::of_last_leg(&log.learning),
+        test: PhaseEntry::of_last_leg(&log.test),
+    };
+    let format = if header.earlier.is_empty() { FORMAT } else { FORMAT_OF_LEGS };
+    let text = serde_json::to_vec(&header)
+        .map_err(|error| Box::new(damaged(format!("the log's header cannot be written: {error}"))))?;
+    let records: usize = log.chunks().map(|(records, digest)| records.len() + digest.len()).sum();
+    let mut file = Vec::with_capacity(records + text.len() + 4096);
+    file.extend_from_slice(&MAGIC);
+    file.extend_from_slice(&format.to_le_bytes());
+    file.extend_from_slice(&(text.len() as u32).to_le_bytes());
+    file.extend_from_slice(&text);
+    let all_before = Sha256::digest(&file);
+    file.extend_from_slice(&all_before);
+    for (records, digest) in log.chunks() {
+        file.extend_from_slice(records);
+        file.extend_from_slice(&digest);
     }
-
-    /// SHA-256 over the records of both phases, chunk by chunk, 64 hexadecimal digits.
-    #[must_use]
-    pub fn sha256(&self) -> String {
-        hex(&self.chunks().last().map_or([0; DIGEST_BYTES], |(_, digest)| digest))
-    }
-
-    /// The chunks of both phases, each with its digest.
-    fn chunks(&self) -> impl Iterator<Item = (&[u8], [u8; DIGEST_BYTES])> {
-        let phases = [&self.learning, &self.test].into_iter();
-        let legs = phases.flat_map(Ledger::legs);
-        let chunks = legs.flat_map(|(shape, bytes)| bytes.chunks(CHUNK_STEPS * shape.bytes()));
-        chunks.scan([0; DIGEST_BYTES], |before, records| {
-            *before = digest(before, records);
-            Some((records, *before))
-        })
-    }
-
-    /// The whole file of a run whose `run.toml` has the text `run`.
-    ///
-    /// # Errors
-    /// Never in practice: only if the header cannot be written as JSON.
-    pub fn to_bytes(&self, plan: &Plan, seed: u64, run: &str) -> Result<Vec<u8>> {
-        let legs = plan.earlier.iter().zip(self.learning.earlier());
-        let earlier = legs.map(|(leg, records)| LegEntry {
-            record_bytes: records.shape.bytes(),
-            rules: RuleEntry::all(&leg.plan),
-            learning: PhaseEntry { steps: records.steps, records: records.len() },
-        });
-        let header = Header {
-            engine: env!("CARGO_PKG_VERSION").to_owned(),
-            behaviour: plan.behaviour.name().to_owned(),
-            seed,
-            run_sha256: hex(&Sha256::digest(run.as_bytes())),
-            record_bytes: self.learning.shape().bytes(),
-            rules: RuleEntry::all(plan),
-            earlier: earlier.collect(),
-            learning: PhaseEntry::of_last_leg(&self.learning),
-            test: PhaseEntry::of_last_leg(&self.test),
-        };
-        let format = if header.earlier.is_empty() { FORMAT } else { FORMAT_OF_LEGS };
-        let text = serde_json::to_vec(&header)
-            .map_err(|error| Box::new(damaged(format!("the log's header cannot be written: {error}"))))?;
-        let records: usize = self.chunks().map(|(records, digest)| records.len() + digest.len()).sum();
-        let mut file = Vec::with_capacity(records + text.len() + 4096);
-        file.extend_from_slice(&MAGIC);
-        file.extend_from_slice(&format.to_le_bytes());
-        file.extend_from_slice(&(text.len() as u32).to_le_bytes());
-        file.extend_from_slice(&text);
-        let all_before = Sha256::digest(&file);
-        file.extend_from_slice(&all_before);
-        for (records, digest) in self.chunks() {
-            file.extend_from_slice(records);
-            file.extend_from_slice(&digest);
-        }
-        Ok(file)
-    }
-}
-
-fn digest(before: &[u8; DIGEST_BYTES], records: &[u8]) -> [u8; DIGEST_BYTES] {
-    Sha256::new().chain_update(before).chain_update(records).finalize().into()
+    Ok(file)
 }
 
 fn hex(bytes: &[u8]) -> String {

@@ -1,11 +1,10 @@
 //! A log file read back: nothing in it is believed before it is checked.
 
-use super::{
-    CHUNK_STEPS, DIGEST_BYTES, FORMAT, FORMAT_OF_LEGS, Header, MAGIC, PREFIX_BYTES, PhaseEntry, RuleEntry, RunLog,
-    damaged, digest, hex,
-};
+use super::{FORMAT, FORMAT_OF_LEGS, Header, MAGIC, PREFIX_BYTES, PhaseEntry, RuleEntry, damaged, hex};
 use engine::diagnostic::{Diagnostic, Result, printable};
-use engine::experiment::{Ledger, LedgerLeg, MOST_STEPS, Plan, Record, RecordShape};
+use engine::experiment::{
+    CHUNK_STEPS, DIGEST_BYTES, Ledger, LedgerLeg, MOST_STEPS, Plan, Record, RecordShape, RunLog, chained,
+};
 use sha2::{Digest, Sha256};
 
 /// Reads the bytes of a log that must belong to a plan under a seed, whose `run.toml` has the text `run`.
@@ -96,6 +95,13 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8])> {
     Ok((header, &bytes[end + DIGEST_BYTES..]))
 }
 
+/// The run that a log names, and how many records it holds, from the beginning of its file; nothing if that is no log.
+pub(in crate::store) fn log_names(start: &[u8]) -> Option<(String, usize)> {
+    let (header, _) = header(start).ok()?;
+    let earlier: usize = header.earlier.iter().map(|leg| leg.learning.records).sum();
+    Some((header.run_sha256, earlier + header.learning.records + header.test.records))
+}
+
 /// Bytes of a phase's chunks with their digests; nothing if no file can be so long.
 fn phase_bytes(phase: PhaseEntry, record_bytes: usize) -> Option<usize> {
     let possible = phase.records as u64 <= phase.steps.min(MOST_STEPS);
@@ -134,7 +140,7 @@ fn phase_records(
         let length = (phase.records * record_bytes - records.len()).min(CHUNK_STEPS * record_bytes);
         let (chunk, tail) = rest.split_at(length);
         let (sum, tail) = tail.split_at(DIGEST_BYTES);
-        *before = digest(before, chunk);
+        *before = chained(before, chunk);
         if *before != sum {
             let first = records.len() / record_bytes;
             let last = first + length / record_bytes - 1;

@@ -5,10 +5,10 @@ use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::{LOG_FILE, RunLog, damaged, read_log};
+use super::{LOG_FILE, damaged, read_log};
 use crate::store::{StoredRun, read_stored};
 use engine::diagnostic::{Diagnostic, Result};
-use engine::experiment::Summary;
+use engine::experiment::{RunLog, Summary};
 use engine::filter::Catalogue;
 
 /// The longest log that is read, bytes: two phases of the most steps with a dozen reward functions each.

@@ -47,7 +47,7 @@ pub(super) fn learn_on(plan: &Plan, threads: usize) -> Result<Vec<f64>> {
     let windows = in_parallel(&seeds, threads, |seed| {
         let ends = Mutex::new(Vec::new());
         let note = |_| ends.lock().unwrap_or_else(PoisonError::into_inner).push(now());
-        learn_into(plan, seed, &stop, &note, &mut Ledger::new(plan, plan.settings.run.steps))?.whole()?;
+        learn_into(plan, seed, &stop, &note, &mut Ledger::new(plan, plan.settings.run.steps))?;
         let ends = ends.into_inner().unwrap_or_else(PoisonError::into_inner);
         let us = |pair: &[Duration]| (pair[1] - pair[0]).as_secs_f64() * 1e6 / WINDOW_STEPS as f64;
         Ok(ends.windows(2).map(us).collect::<Vec<_>>())

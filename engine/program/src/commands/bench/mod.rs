@@ -41,7 +41,7 @@ pub(crate) fn run(arguments: &BenchArguments, console: &mut Console) -> std::res
     if let Some(steps) = arguments.count_steps {
         // Counted from outside, instruction by instruction.
         let (plan, stop) = (workload::with_steps(&plan, steps), AtomicBool::new(false));
-        learn_into(&plan, 1, &stop, &|_| (), &mut Ledger::new(&plan, steps))?.whole()?;
+        learn_into(&plan, 1, &stop, &|_| (), &mut Ledger::new(&plan, steps)).map_err(|broken| broken.error)?;
         console.line(&format!("{steps} steps, {}", Processor::best().name()))?;
         return Ok(0);
     }
@@ -68,7 +68,7 @@ fn measure(plan: &Plan, arguments: &BenchArguments) -> Result<Report> {
         behaviour: plan.behaviour.name().to_owned(),
         world: plan.layout.name.clone(),
         image: [camera.width_px, camera.height_px],
-        lens: camera.lens.clone(),
+        lens: camera.lens.word().to_owned(),
         textured: arguments.texture,
         processor: Processor::best().name(),
         cores,

@@ -4,10 +4,10 @@ use std::hint::black_box;
 use std::sync::Arc;
 
 use engine::diagnostic::{Diagnostic, Kind, Result};
-use engine::experiment::{Cycle, Ledger, Plan, Step};
+use engine::experiment::{Cycle, Ledger, Observer, Plan, Step};
 use engine::filter::Chain;
 use engine::geometry::{Isometry3, Pose};
-use engine::learner::{Learner, Transition};
+use engine::learner::{Learner, TableLearner, Transition};
 use engine::random::{Random, Stream};
 use engine::reward::{Facts, Judge};
 use engine::robot::SimulatedRobot;
@@ -51,7 +51,7 @@ pub(crate) struct Stages {
     chain: Chain,
     grid: Grid,
     judge: Judge,
-    learner: Learner,
+    learner: TableLearner,
     cycle: Cycle<SimulatedRobot>,
     step: Step,
     ledger: Ledger,
@@ -80,7 +80,6 @@ impl Stages {
         let mut judge = plan.judge()?;
         judge.facts_mut().clone_from(&samples[0].facts);
         judge.calibrate()?;
-        let random = Random::new(1, Stream::Learner);
         let mut cycle = Cycle::new(plan, SimulatedRobot::new(layout, settings, 1)?)?;
         Ok(Self {
             world: World::new(Arc::clone(layout), &settings.robot, settings.run.period_s, 1),
@@ -89,7 +88,7 @@ impl Stages {
             image: samples[0].image.clone(),
             scan: Scan { ranges_m: vec![0.0; settings.laser.beams as usize] },
             chain: plan.chain()?,
-            learner: Learner::new(&settings.learner, grid.states(), settings.actions.len(), random),
+            learner: TableLearner::new(&settings.learner, plan.task(&*plan.state_map()?, 1)?),
             grid,
             judge,
             step: cycle.step(0)?,
@@ -149,13 +148,15 @@ impl Stages {
             (self.ledger, self.logged) = (Ledger::new(&self.plan, LOGGED), 0);
         }
         self.logged += 1;
-        black_box(&mut self.ledger).add(black_box(&self.cycle), &self.step, false);
+        let _ = black_box(&mut self.ledger).stepped(black_box(&self.cycle), &self.step);
     }
 
     fn learner(&mut self, index: usize) {
         let (state, next_state) = (self.samples[index].state, self.samples[(index + 1) % SAMPLES].state);
-        let action = self.learner.choose(state);
-        self.learner.learn(&Transition { state, action, reward: 0.0, next_state, terminal: false });
+        let (action, _) = self.learner.choose(state);
+        let (potential, next_potential) = (0.0, 0.0);
+        let transition = Transition { state, action, reward: 0.0, next_state, ending: None, potential, next_potential };
+        self.learner.learn(&transition);
     }
 }
 

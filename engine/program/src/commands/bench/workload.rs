@@ -43,7 +43,7 @@ pub(super) fn plan(arguments: &BenchArguments) -> Result<Plan> {
     };
     let filters = || crate::commands::sources::catalogue(&arguments.filters);
     let plan = Plan::load(&arguments.behaviour, &overrides, filters)?;
-    if !plan.settings.policies.is_empty() {
+    if !plan.learns() {
         let message = format!("'{}' combines policies and learns nothing", plan.behaviour.name());
         return Diagnostic::new("E-COMBINES", message).help("measure a behaviour that learns").fail();
     }

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use engine::diagnostic::Result;
+use insight::folder::create_folder;
 use insight::report::write_atomic;
 use pack::{Card, Locked, Pack, Signature, gallery, signature_line};
 use serde_json::json;
 
-use super::super::folder::create;
 use super::fetch::{load, offers_in};
 use super::inspect::key_shown;
 use super::places::Places;
@@ -44,7 +44,7 @@ pub(super) fn list(arguments: &ListArguments, console: &mut Console) -> std::res
     }
     console.json(&rows)?;
     if let Some(folder) = &arguments.gallery {
-        create(folder)?;
+        create_folder(folder)?;
         let path = folder.join("index.html");
         write_atomic(&path, gallery(&cards)?.as_bytes())?;
         console.line(&format!("gallery:   {}", path.display()))?;

@@ -42,7 +42,7 @@ pub(super) fn fetch(address: &str) -> Result<(Vec<u8>, Option<String>)> {
     }
     let message = format!("'{}' is no address of a pack", printable(address));
     let help = "write oci://host/name:version, https://host/file.pack, or a path";
-    Diagnostic::new("E-PACK-ADDRESS", message).help(help).into()
+    Diagnostic::new("E-PACK-ADDRESS", message).help(help).fail()
 }
 
 /// Pushes a pack and its signature; the answer pins what was pushed.
@@ -50,7 +50,7 @@ pub(super) fn push(pack: &Pack, signature: Option<&Signature>, address: &str) ->
     let Some(target) = address.strip_prefix("oci://") else {
         let message = format!("'{}' is no place to push to", printable(address));
         let help = "write oci://host/name, or the path of a folder";
-        return Diagnostic::new("E-PACK-ADDRESS", message).help(help).into();
+        return Diagnostic::new("E-PACK-ADDRESS", message).help(help).fail();
     };
     let last = target.rsplit('/').next().unwrap_or(target);
     let target = if last.contains(':') { target.to_owned() } else { format!("{target}:{}", pack.manifest().version) };

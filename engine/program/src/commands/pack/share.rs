@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use engine::diagnostic::{Diagnostic, Kind, Result, printable};
+use insight::folder::create_folder;
 use insight::report::write_atomic;
 use pack::{Pack, Signature};
 use serde_json::json;
 
-use super::super::folder::create;
 use super::fetch::fetch;
 use super::places::{signature_of, signature_path};
 use crate::cli::{PullArguments, PushArguments};
@@ -52,7 +52,7 @@ pub(super) fn pull(arguments: &PullArguments, console: &mut Console) -> std::res
 
 /// Writes a pack and its signature into a folder, under the pack's own name.
 fn store(pack: &Pack, signature: Option<&Signature>, folder: &Path) -> Result<PathBuf> {
-    create(folder)?;
+    create_folder(folder)?;
     let path = folder.join(pack.manifest().file_name());
     let beside = signature_path(&path);
     write_atomic(&path, pack.bytes())?;

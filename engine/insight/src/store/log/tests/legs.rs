@@ -32,7 +32,7 @@ fn swapped(carry: Carry) -> Plan {
 fn learn(plan: &Plan) -> (Learned, RunLog) {
     let (mut log, stop) = (RunLog::new(plan), AtomicBool::new(false));
     let learned = learn_into(plan, SEED, &stop, &|_| (), &mut log.learning).unwrap();
-    test_into(plan, &learned.policy, SEED, &stop, &mut log.test).unwrap();
+    test_and_watch(plan, &learned.policy, SEED, &stop, &mut log.test).unwrap();
     (learned, log)
 }
 
@@ -101,13 +101,13 @@ fn a_swapped_run_comes_back_from_its_folder() {
     std::fs::create_dir_all(&folder).unwrap();
     let plan = swapped(Carry::Decay);
     let (learned, log) = learn(&plan);
-    let run = run_to_toml(&plan, &[], SEED).unwrap();
+    let run = run_to_toml(&plan, SEED).unwrap();
     assert!(run.starts_with("format = 2\n") && run.contains("table = \"decay\""), "{run}");
     std::fs::write(folder.join("run.toml"), &run).unwrap();
-    let table = policy_to_toml("log", &plan.settings, &plan.filters, &learned.policy).unwrap();
+    let table = policy_to_toml("log", &plan.settings, &plan.filters, &learned.policy, Some(&run)).unwrap();
     std::fs::write(folder.join("policy.toml"), table).unwrap();
     let stored = StoredRun::load(&folder).unwrap();
-    let file = log.to_bytes(&plan, SEED, &run).unwrap();
+    let file = log_to_bytes(&log, &plan, SEED, &run).unwrap();
     assert_eq!(file[8], 2);
     assert_eq!(read_log(&file, &stored.plan, SEED, &run).unwrap(), log);
     // Learned again from what the folder says.

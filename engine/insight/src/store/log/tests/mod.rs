@@ -8,9 +8,9 @@ use sha2::{Digest, Sha256};
 
 mod legs;
 
-use super::{DIGEST_BYTES, PREFIX_BYTES, RunLog, read_log};
+use super::{PREFIX_BYTES, log_to_bytes, read_log};
 use engine::diagnostic::{Kind, Result, SourceText};
-use engine::experiment::{Ledger, LedgerLeg, Plan, learn_into, test_into};
+use engine::experiment::{DIGEST_BYTES, Ledger, LedgerLeg, Plan, RunLog, learn_into, test_and_watch};
 use engine::filter::Catalogue;
 use engine::reward::Behaviour;
 use engine::world::Layout;
@@ -39,9 +39,9 @@ static SAMPLE: LazyLock<Sample> = LazyLock::new(|| {
     let (mut learning, mut test) = (Ledger::new(&plan, 1200), Ledger::new(&plan, 40));
     let stop = AtomicBool::new(false);
     let learned = learn_into(&plan, SEED, &stop, &|_| (), &mut learning).unwrap();
-    test_into(&plan, &learned.policy, SEED, &stop, &mut test).unwrap();
+    test_and_watch(&plan, &learned.policy, SEED, &stop, &mut test).unwrap();
     let log = RunLog { learning, test };
-    let file = log.to_bytes(&plan, SEED, RUN).unwrap();
+    let file = log_to_bytes(&log, &plan, SEED, RUN).unwrap();
     Sample { plan, log, file }
 });
 
@@ -86,7 +86,7 @@ fn a_log_comes_back_as_it_was_written() {
 #[test]
 fn a_log_that_holds_only_the_beginning_of_a_run_knows_how_long_the_run_was() {
     let learning = ledger(bytes_of(&SAMPLE.log.learning), 9_000_000);
-    let file = RunLog { learning, test: SAMPLE.log.test.clone() }.to_bytes(&SAMPLE.plan, SEED, RUN).unwrap();
+    let file = log_to_bytes(&RunLog { learning, test: SAMPLE.log.test.clone() }, &SAMPLE.plan, SEED, RUN).unwrap();
     let read = read(&file).unwrap().learning;
     assert_eq!((read.len(), read.steps()), (1200, 9_000_000));
 }
@@ -156,7 +156,7 @@ fn a_state_that_the_grid_does_not_have_is_refused_even_with_a_checksum_that_fits
     bytes[88 * 7 + 32..][..4].copy_from_slice(&64_u32.to_le_bytes());
     let test = ledger(bytes, 40);
     let log = RunLog { learning: SAMPLE.log.learning.clone(), test };
-    let file = log.to_bytes(&SAMPLE.plan, SEED, RUN).unwrap();
+    let file = log_to_bytes(&log, &SAMPLE.plan, SEED, RUN).unwrap();
     assert_eq!(message(&file), "step 7 of the test in the log is not one that the run can have done");
 }
 
@@ -183,7 +183,7 @@ proptest! {
     ) {
         let test = ledger(bytes, 3);
         let log = RunLog { learning: SAMPLE.log.learning.clone(), test };
-        let file = log.to_bytes(&SAMPLE.plan, SEED, RUN).unwrap();
+        let file = log_to_bytes(&log, &SAMPLE.plan, SEED, RUN).unwrap();
         if let Ok(read) = read(&file) {
             prop_assert_eq!(read.sha256(), log.sha256());
         }

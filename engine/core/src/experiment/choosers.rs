@@ -1,0 +1,106 @@
+//! Those who choose: a learner, a frozen policy, several policies as one, a function, a record.
+
+use super::{Choice, Chooser, Disagreements, Step};
+use crate::diagnostic::Result;
+use crate::learner::{Combined, Ending, Learner, Policy, Softmax, Transition};
+use crate::random::Random;
+
+/// A learner that learns from every step.
+pub struct Learns<'a, L: ?Sized>(pub &'a mut L);
+
+impl<L: Learner + ?Sized> Chooser for Learns<'_, L> {
+    fn choose(&mut self, states: &[usize]) -> Result<Choice> {
+        let (action, explored) = self.0.choose(states[0]);
+        Ok(Choice { action, explored })
+    }
+
+    fn learn(&mut self, step: &Step) {
+        self.0.learn(&Transition {
+            state: step.state,
+            action: step.action,
+            reward: step.reward,
+            next_state: step.next_state,
+            ending: Ending::of(step.recover, step.reward),
+            potential: step.potential,
+            next_potential: step.next_potential,
+        });
+    }
+
+    fn forget(&mut self) {
+        self.0.forget();
+    }
+}
+
+/// A policy that learns no more, at the lowest temperature.
+pub struct Frozen<'a> {
+    policy: &'a Policy,
+    softmax: Softmax,
+    random: Random,
+}
+
+impl<'a> Frozen<'a> {
+    /// A policy with the softmax that fits it and a stream of its own.
+    #[must_use]
+    pub fn new(policy: &'a Policy, softmax: Softmax, random: Random) -> Self {
+        Self { policy, softmax, random }
+    }
+}
+
+impl Chooser for Frozen<'_> {
+    fn choose(&mut self, states: &[usize]) -> Result<Choice> {
+        let state = states[0];
+        let action = self.policy.choose(state, &mut self.softmax, &mut self.random);
+        let explored = self.policy.best(state).is_none_or(|(best, _)| best != action);
+        Ok(Choice { action, explored })
+    }
+}
+
+/// Several policies as one, each in the state that its own eyes perceive.
+pub struct Together {
+    combined: Combined,
+    random: Random,
+    disagreements: Disagreements,
+}
+
+impl Together {
+    /// Policies that decide together for so many steps.
+    #[must_use]
+    pub fn new(combined: Combined, random: Random, steps: u64) -> Self {
+        let disagreements = Disagreements::new(&combined, steps);
+        Self { combined, random, disagreements }
+    }
+
+    /// Where they disagreed.
+    #[must_use]
+    pub fn into_disagreements(self) -> Disagreements {
+        self.disagreements
+    }
+}
+
+impl Chooser for Together {
+    fn choose(&mut self, states: &[usize]) -> Result<Choice> {
+        // The first state is the script's own.
+        let states = &states[1..];
+        let decision = self.combined.choose(states, &mut self.random);
+        self.disagreements.count(states, self.combined.votes(), &decision);
+        Ok(Choice { action: decision.action, explored: false })
+    }
+}
+
+/// Chooses by the script's present state alone.
+pub struct ByState<F>(pub F);
+
+impl<F: FnMut(usize) -> usize> Chooser for ByState<F> {
+    fn choose(&mut self, states: &[usize]) -> Result<Choice> {
+        Ok(Choice { action: (self.0)(states[0]), explored: false })
+    }
+}
+
+/// One choice that was made before.
+pub struct Recorded(pub Choice);
+
+impl Chooser for Recorded {
+    fn choose(&mut self, _: &[usize]) -> Result<Choice> {
+        Ok(self.0)
+    }
+}

@@ -1,0 +1,43 @@
+//! One seed from beginning to end: learned or combined, tested, counted. A pure function of its plan and its seed.
+
+use std::sync::atomic::AtomicBool;
+
+use super::{BrokenOff, Decider, Learned, Plan, Progress, RunLog, Summary, TestRun, learn_into};
+
+/// What one seed leaves.
+#[derive(Debug, Clone)]
+pub struct SeedRun {
+    /// What was learned; nothing of a behaviour that combines learned policies.
+    pub learned: Option<Learned>,
+    /// The test.
+    pub tested: TestRun,
+    /// The figures; how long it took is not among them, see [`Summary::timed`].
+    pub summary: Summary,
+}
+
+/// Learns a plan under a seed, unless it combines policies, and tests what came of it, with every step kept in `log`.
+/// Once `stop` is set, it ends after the present window.
+///
+/// # Errors
+/// If a sensor, a filter or the script fails; what was learned before is in the error, and in the log.
+pub fn run_seed(
+    plan: &Plan,
+    seed: u64,
+    stop: &AtomicBool,
+    report: &(dyn Fn(Progress) + Sync),
+    log: &mut RunLog,
+) -> Result<SeedRun, Box<BrokenOff>> {
+    let (learned, decider) = if plan.learns() {
+        let learned = learn_into(plan, seed, stop, report, &mut log.learning)?;
+        let decider = Decider::Learned(learned.policy.clone());
+        (Some(learned), decider)
+    } else {
+        (None, Decider::Combined)
+    };
+    let tested = match decider.test(plan, seed, stop, &mut log.test) {
+        Ok(tested) => tested,
+        Err(error) => return Err(Box::new(BrokenOff { error, learned })),
+    };
+    let summary = Summary { log_sha256: Some(log.sha256()), ..Summary::new(plan, seed, learned.as_ref(), &tested) };
+    Ok(SeedRun { learned, tested, summary })
+}

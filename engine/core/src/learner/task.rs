@@ -1,0 +1,67 @@
+//! What a learner is made for, and what it is told.
+
+use crate::geometry::Twist;
+use crate::random::Random;
+use crate::state::Digit;
+
+use super::Mirror;
+
+/// The task of a learner: its states, its actions, and chance of its own.
+#[derive(Debug, Clone)]
+pub struct Task {
+    /// The digits of a state's number, lowest first; a learner may treat it as one number.
+    pub digits: Vec<Digit>,
+    /// How many states there may be: the product of all digits' values.
+    pub states: usize,
+    /// What each action commands.
+    pub actions: Vec<Twist>,
+    /// The mirror image of each state and action, if the script asks to learn left for right.
+    pub mirror: Option<Mirror>,
+    /// The learner's own stream of random numbers.
+    pub random: Random,
+}
+
+impl Task {
+    /// A task over so many plain states.
+    #[must_use]
+    pub fn plain(states: usize, actions: Vec<Twist>, random: Random) -> Self {
+        Self { digits: vec![Digit { part: 0, values: states }], states, actions, mirror: None, random }
+    }
+}
+
+/// How an attempt ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ending {
+    /// Something went wrong, and the script asked for recovery.
+    Failure,
+    /// What the script wants was reached.
+    Goal,
+}
+
+impl Ending {
+    /// How a step ended the attempt, if the script asks for recovery: with a reward above 0 it reached its goal.
+    #[must_use]
+    pub fn of(recover: bool, reward: f64) -> Option<Self> {
+        recover.then_some(if reward > 0.0 { Self::Goal } else { Self::Failure })
+    }
+}
+
+/// One step, as the learner sees it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Transition {
+    /// The state in which the action was chosen.
+    pub state: usize,
+    /// The action.
+    pub action: usize,
+    /// The reward of the step.
+    pub reward: f64,
+    /// The state at the end of the step; after a failure, the state of the failure.
+    pub next_state: usize,
+    /// How the attempt ended with this step, if it did: the next step begins somewhere else.
+    pub ending: Option<Ending>,
+    /// What delayed rules had built up before the step: the sum, over the rules that must hold for a time and have a fixed
+    /// value, of that value times the share of the time for which they have held.
+    pub potential: f64,
+    /// The same sum after the step, before any recovery.
+    pub next_potential: f64,
+}

@@ -1,0 +1,67 @@
+//! Files of a run's folder that are read again: figures, curve, policy, log.
+
+use std::path::Path;
+
+use super::SeedResult;
+use crate::report::{CurveRow, curve_csv, disagreements_csv, write_atomic};
+use crate::store::{LOG_FILE, POLICY_FILE, RUN_FILE, SUMMARY_FILE, log_to_bytes, policy_to_toml, run_to_toml};
+use engine::diagnostic::{Diagnostic, Result};
+use engine::experiment::{Learned, Plan, RunLog, WINDOW_STEPS};
+
+/// Makes a folder and those above it.
+///
+/// # Errors
+/// If one cannot be made.
+pub fn create_folder(path: &Path) -> Result<()> {
+    std::fs::create_dir_all(path).map_err(|error| Box::new(Diagnostic::disk("create the folder", path, &error)))
+}
+
+/// Writes a value as JSON that people can read.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<()> {
+    let mut text = serde_json::to_string_pretty(value)
+        .map_err(|error| Box::new(Diagnostic::new("E-IO", format!("cannot write '{}': {error}", path.display()))))?;
+    text.push('\n');
+    write_atomic(path, text.as_bytes())
+}
+
+/// Writes `run.toml`, by which all other files of the folder name their run.
+pub(super) fn write_run(folder: &Path, plan: &Plan, seed: u64) -> Result<()> {
+    write_atomic(&folder.join(RUN_FILE), run_to_toml(plan, seed)?.as_bytes())
+}
+
+/// Writes `log.bin`.
+pub(super) fn write_log(folder: &Path, plan: &Plan, seed: u64, log: &RunLog) -> Result<()> {
+    let run = run_to_toml(plan, seed)?;
+    write_atomic(&folder.join(LOG_FILE), &log_to_bytes(log, plan, seed, &run)?)
+}
+
+/// Writes `policy.toml`.
+pub(super) fn write_policy(folder: &Path, plan: &Plan, learned: &Learned) -> Result<()> {
+    let run = run_to_toml(plan, learned.seed)?;
+    let (name, settings) = (plan.behaviour.name(), &plan.settings);
+    let text = policy_to_toml(name, settings, &plan.filters, &learned.policy, Some(&run))?;
+    write_atomic(&folder.join(POLICY_FILE), text.as_bytes())
+}
+
+/// Writes the figures of a seed, and its curve and policy or, if it combines policies, where they disagree.
+pub(super) fn write_seed(folder: &Path, plan: &Plan, result: &SeedResult) -> Result<()> {
+    write_json(&folder.join(SUMMARY_FILE), &result.run.summary)?;
+    if let Some(combination) = &result.run.tested.combination {
+        let names: Vec<&str> = plan.members.iter().map(|member| member.name.as_str()).collect();
+        let table = disagreements_csv(&names, &plan.settings.actions, &combination.disagreements);
+        write_atomic(&folder.join("disagreements.csv"), table.as_bytes())?;
+    }
+    let Some(learned) = &result.run.learned else { return Ok(()) };
+    let (mut step, tally) = (0, &learned.tally);
+    let rows: Vec<CurveRow> = (tally.windows.iter().enumerate())
+        .map(|(index, window)| {
+            step += window.steps;
+            CurveRow { step, reinforcement: window.reinforcement, by_rule: tally.by_rule(index).to_vec() }
+        })
+        .collect();
+    write_atomic(&folder.join("curve.csv"), curve_csv(WINDOW_STEPS, &plan.rule_names(), &rows).as_bytes())?;
+    write_policy(folder, plan, learned)
+}

@@ -1,0 +1,128 @@
+//! A run's folder, written: what `store` reads again, the pictures of `report` and the page of `page`.
+
+mod files;
+mod pages;
+mod pictures;
+mod test_folder;
+
+use std::path::{Path, PathBuf};
+
+use crate::lint::Report;
+use crate::store::{POLICY_FILE, SUMMARY_FILE};
+use engine::diagnostic::{Diagnostic, Result};
+use engine::experiment::{Learned, Plan, RunLog, SeedRun, Spread};
+use files::{write_log, write_policy, write_run, write_seed};
+
+pub use files::{create_folder, write_json};
+pub use test_folder::TestFolder;
+
+/// One seed's results.
+#[derive(Debug, Clone)]
+pub struct SeedResult {
+    /// What was learned, the test and the figures.
+    pub run: SeedRun,
+    /// Every step, of a run of one seed; the logs of many are written as soon as each is done.
+    pub log: Option<RunLog>,
+}
+
+/// A folder for one run, of one seed or many.
+#[derive(Debug, Clone)]
+pub struct RunFolder {
+    path: PathBuf,
+    /// Whether each seed has a folder of its own in it.
+    many: bool,
+}
+
+impl RunFolder {
+    /// Creates the folder and writes `run.toml`, so that a folder that cannot be written is known before learning.
+    ///
+    /// # Errors
+    /// If it cannot be made.
+    pub fn create(path: &Path, plan: &Plan, seeds: &[u64]) -> Result<Self> {
+        create_folder(path)?;
+        write_run(path, plan, seeds.first().copied().unwrap_or_default())?;
+        Ok(Self { path: path.to_owned(), many: seeds.len() > 1 })
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The folder of one seed, made if it is not there.
+    fn of_seed(&self, seed: u64) -> Result<PathBuf> {
+        let folder = if self.many { self.path.join(seed.to_string()) } else { self.path.clone() };
+        create_folder(&folder)?;
+        Ok(folder)
+    }
+
+    /// Writes the log of a seed as soon as it is done, so that no more of them are in memory than threads.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn keep_log(&self, plan: &Plan, seed: u64, log: &RunLog) -> Result<()> {
+        write_log(&self.of_seed(seed)?, plan, seed, log)
+    }
+
+    /// Writes what there is of a seed that a failure ended: its policy, whose path is returned, and its steps, not tested.
+    ///
+    /// # Errors
+    /// If a file cannot be written, or the figures of an older run cannot be removed.
+    pub fn keep_broken(&self, plan: &Plan, learned: &Learned, log: &RunLog) -> Result<PathBuf> {
+        let folder = self.of_seed(learned.seed)?;
+        write_run(&folder, plan, learned.seed)?;
+        write_log(&folder, plan, learned.seed, log)?;
+        write_policy(&folder, plan, learned)?;
+        // Of an older run in the same folder.
+        match std::fs::remove_file(folder.join(SUMMARY_FILE)) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                Err(Box::new(Diagnostic::disk("remove the old", &folder.join(SUMMARY_FILE), &error)))
+            }
+            _ => Ok(folder.join(POLICY_FILE)),
+        }
+    }
+
+    /// Writes figures, policies, pictures and pages; of many seeds, a folder for each and the spread above them. The logs
+    /// were kept before.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub fn write(&self, plan: &Plan, results: &[SeedResult], checked: Option<&Report>) -> Result<()> {
+        if self.many {
+            let spread = Spread::new(results.iter().map(|result| result.run.summary.clone()).collect());
+            write_json(&self.path.join(SUMMARY_FILE), &spread)?;
+        }
+        for result in results {
+            let folder = self.of_seed(result.run.summary.seed)?;
+            if self.many {
+                write_run(&folder, plan, result.run.summary.seed)?;
+            }
+            write_seed(&folder, plan, result)?;
+        }
+        if plan.learns() {
+            self.show_learned(plan, results, checked)
+        } else {
+            self.show_combined(plan, results, checked)
+        }
+    }
+
+    /// Of many seeds, the one that fails most in its test is the one to look at.
+    fn show_learned(&self, plan: &Plan, results: &[SeedResult], checked: Option<&Report>) -> Result<()> {
+        pictures::draw_curve(&self.path, plan, results)?;
+        let failures = |result: &SeedResult| result.run.summary.test.failures_per_1000;
+        let Some(worst) = results.iter().max_by(|a, b| failures(a).total_cmp(&failures(b))) else { return Ok(()) };
+        pictures::draw_seed(&self.of_seed(worst.run.summary.seed)?, plan, worst)?;
+        pages::write_page(&self.path, plan, results, checked)
+    }
+
+    /// Each seed has its own pictures and its own page.
+    fn show_combined(&self, plan: &Plan, results: &[SeedResult], checked: Option<&Report>) -> Result<()> {
+        for result in results {
+            let folder = self.of_seed(result.run.summary.seed)?;
+            pictures::draw_seed(&folder, plan, result)?;
+            pages::write_page(&folder, plan, std::slice::from_ref(result), checked)?;
+        }
+        Ok(())
+    }
+}

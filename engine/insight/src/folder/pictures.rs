@@ -1,0 +1,65 @@
+//! The pictures of a run: curve, paths, frame, policy.
+
+use std::path::Path;
+
+use super::SeedResult;
+use crate::report::{
+    CurveData, PolicyData, PolicyState, TrajectoryData, learning_curve, policy, snapshot_frame, trajectories,
+};
+use engine::diagnostic::Result;
+use engine::experiment::{Learned, Plan, Spread, TestRun, Trail, WINDOW_STEPS};
+use engine::geometry::Point2;
+use engine::learner::PolicyRow;
+
+pub(super) fn draw_curve(folder: &Path, plan: &Plan, results: &[SeedResult]) -> Result<()> {
+    let summary = |result: &SeedResult| result.run.summary.clone();
+    let curves: Vec<Vec<f64>> = results.iter().map(|result| summary(result).reinforcement_per_400).collect();
+    let (learned_at, seeds) = match results {
+        [result] => (result.run.summary.learned_at, format!("seed {}", result.run.summary.seed)),
+        _ => (Spread::new(results.iter().map(summary).collect()).median.learned_at, format!("{} seeds", results.len())),
+    };
+    let title = format!("{} in {}, {seeds}", plan.behaviour.name(), plan.layout.name);
+    learning_curve(&CurveData { title: &title, window_steps: WINDOW_STEPS, curves: &curves, learned_at })?
+        .write(folder, "learning-curve")
+}
+
+pub(super) fn draw_seed(folder: &Path, plan: &Plan, result: &SeedResult) -> Result<()> {
+    let seed = result.run.summary.seed;
+    let title = format!("{} in {}, seed {seed}", plan.behaviour.name(), plan.layout.name);
+    let tested = ("test: first 800 steps", &result.run.tested.trail);
+    match &result.run.learned {
+        Some(learned) => {
+            let panels = [("learning: first 400 steps", &learned.early), tested];
+            draw_trails(folder, plan, &title, &panels)?;
+            draw_policy(folder, plan, learned)?;
+        }
+        None => draw_trails(folder, plan, &title, &[tested])?,
+    }
+    draw_frame(folder, plan, &result.run.tested)
+}
+
+pub(super) fn draw_trails(folder: &Path, plan: &Plan, title: &str, panels: &[(&str, &Trail)]) -> Result<()> {
+    let route: Option<Vec<Point2>> = plan.layout.lap.map(|lap| plan.layout.routes[lap].points().to_vec());
+    let parts = plan.layout.scene.parts();
+    trajectories(&TrajectoryData { title, parts, route: route.as_deref(), panels })?.write(folder, "trajectories")
+}
+
+pub(super) fn draw_frame(folder: &Path, plan: &Plan, tested: &TestRun) -> Result<()> {
+    let title = format!("{} in {}: what the robot sees", plan.behaviour.name(), plan.layout.name);
+    snapshot_frame(&title, &tested.snapshot)?.write(folder, "frame")
+}
+
+fn draw_policy(folder: &Path, plan: &Plan, learned: &Learned) -> Result<()> {
+    let (map, (rows, columns)) = (plan.state_map()?, plan.grid()?.size());
+    let policy_of = &learned.policy;
+    let state = |(state, row): (usize, &Option<PolicyRow>)| {
+        let row = row.as_ref()?;
+        let (best, value) = policy_of.best(state)?;
+        let best = plan.settings.actions[best];
+        let cells = map.describe(state).cells.map_or_else(Vec::new, |cells| cells.filled);
+        Some(PolicyState { state, cells, visits: row.visits, best, value })
+    };
+    let states: Vec<PolicyState> = policy_of.rows().iter().enumerate().filter_map(state).collect();
+    let title = format!("{}, seed {}: best action of each state", plan.behaviour.name(), learned.seed);
+    policy(&PolicyData { title: &title, rows, columns, states: &states })?.write(folder, "policy")
+}

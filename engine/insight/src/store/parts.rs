@@ -1,0 +1,86 @@
+//! Whether the files of a run's folder belong together: each names the run that it belongs to by the digest of `run.toml`.
+
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::path::Path;
+
+use serde::Deserialize;
+use sha2::{Digest, Sha256};
+
+use super::log::{LOG_FILE, log_names};
+use super::read_stored;
+use engine::diagnostic::{Diagnostic, Result, SourceText, printable};
+use engine::experiment::DIGEST_BYTES;
+
+/// The name of the file that all others of a run's folder name.
+pub const RUN_FILE: &str = "run.toml";
+/// The name of the file of figures.
+pub const SUMMARY_FILE: &str = "summary.json";
+/// The longest part of a log that is read to find out its run, bytes: prefix and header.
+const MOST_HEADER_BYTES: u64 = 16 << 20;
+
+/// SHA-256 of a text, 64 hexadecimal digits.
+pub(super) fn sha256_of(text: &str) -> String {
+    hex(&Sha256::digest(text.as_bytes()))
+}
+
+pub(super) fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// The run that a summary names.
+#[derive(Deserialize)]
+struct Names {
+    log_sha256: Option<String>,
+}
+
+/// Checks that `log.bin` and `summary.json`, where they are there, belong to the run of this `run.toml`.
+///
+/// # Errors
+/// `E-LOG-RUN` if one belongs to another run.
+pub(super) fn check_parts(folder: &Path, run: &SourceText) -> Result<()> {
+    let path = folder.join(LOG_FILE);
+    let Some((log_run, log_end)) = of_log(&path) else { return Ok(()) };
+    if log_run != sha256_of(&run.text) {
+        return other(&path, &run.path).fail();
+    }
+    let path = folder.join(SUMMARY_FILE);
+    if !path.exists() {
+        return Ok(());
+    }
+    let text = read_stored(&path)?;
+    let named = serde_json::from_str(&text.text).ok().and_then(|Names { log_sha256 }| log_sha256);
+    match named {
+        Some(named) if named != log_end => other(&path, &folder.join(LOG_FILE)).fail(),
+        _ => Ok(()),
+    }
+}
+
+/// Checks that a part that names a run names this one.
+///
+/// # Errors
+/// `E-LOG-RUN` if it names another one, or none.
+pub(super) fn belongs(part: &SourceText, named: Option<&str>, run: &SourceText) -> Result<()> {
+    if named == Some(sha256_of(&run.text).as_str()) { Ok(()) } else { other(&part.path, &run.path).fail() }
+}
+
+fn other(part: &Path, run: &Path) -> Diagnostic {
+    let shown = |path: &Path| printable(&path.display().to_string());
+    let message = format!("'{}' does not belong to '{}': it names another run", shown(part), shown(run));
+    Diagnostic::new("E-LOG-RUN", message).help("keep the files of one run together, or run the behaviour again")
+}
+
+/// The run that a log names, and the digest that it ends with; nothing if there is no log, or none that can be read: whoever
+/// needs the log itself says what is wrong with it.
+fn of_log(path: &Path) -> Option<(String, String)> {
+    let mut file = File::open(path).ok().filter(|file| file.metadata().is_ok_and(|data| data.is_file()))?;
+    let mut start = Vec::new();
+    (&mut file).take(MOST_HEADER_BYTES).read_to_end(&mut start).ok()?;
+    let (run, records) = log_names(&start)?;
+    let mut end = [0; DIGEST_BYTES];
+    if records > 0 {
+        file.seek(SeekFrom::End(-(DIGEST_BYTES as i64))).ok()?;
+        file.read_exact(&mut end).ok()?;
+    }
+    Some((run, hex(&end)))
+}
