@@ -6,13 +6,14 @@ use crate::support::root;
 const IMPORTS: &[(&str, &[&str])] = &[
     ("geometry", &[]),
     ("random", &[]),
+    ("saved", &[]),
     ("settings", &["geometry"]),
     ("diagnostic", &[]),
     ("world", &[]),
     ("sensors", &["world"]),
     ("filter", &["sensors"]),
-    ("state", &[]),
-    ("learner", &[]),
+    ("state", &["sensors"]),
+    ("learner", &["state"]),
     ("reward", &[]),
     ("robot", &["world", "sensors"]),
     ("experiment", &["world", "sensors", "filter", "state", "learner", "reward", "robot"]),
@@ -21,8 +22,9 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("report", &[]),
     ("page", &["lint", "report"]),
     ("record", &[]),
+    ("folder", &["store", "lint", "report", "page"]),
 ];
-const SHARED: &[&str] = &["geometry", "random", "settings", "diagnostic"];
+const SHARED: &[&str] = &["geometry", "random", "saved", "settings", "diagnostic"];
 /// Words of the clock and of chance, and who may say them.
 const ONLY_IN: &[(&str, &[&str])] = &[
     // The room of filters only waits for a worker, with a deadline; the live page for people and files.
@@ -41,7 +43,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
-        if path.is_dir() && !path.ends_with("target") {
+        if path.is_dir() && !path.ends_with("target") && !path.ends_with("examples") {
             found.extend(sources(&path));
         } else if path.extension().is_some_and(|ending| ending == "rs") {
             found.push(path);

@@ -120,7 +120,7 @@ fn a_library_that_nobody_allowed_is_not_even_loaded_and_the_words_that_allow_it_
 fn the_digest_of_another_file_allows_nothing() {
     let Some(loaded) = Hostile::c("loaded", &[]) else { return };
     let other = format!("--allow-native=sha256:{}", "0".repeat(64));
-    let words = ["error[E-NATIVE-DIGEST]", &digest(&loaded.library())];
+    let words = ["error[E-NATIVE-DENIED]", &digest(&loaded.library())];
     expect(&mut loaded.command(&["run", "mine.rhai", &other]), 5, &words);
     loaded.bench.write("trust.toml", format!("native = [\"sha256:{}\"]\n", "f".repeat(64)));
     expect(&mut loaded.command(&["run", "mine.rhai"]), 5, &words);

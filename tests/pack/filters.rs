@@ -56,7 +56,7 @@ fn a_bridge_that_the_engine_does_not_have_is_not_given() {
     bench.write("a.pack", pack_of(&format!("{HEAD}\n[capabilities]\nbridge = true\n"), &small_files()));
     bench.ok(&["pack", "install", "a.pack", "--allow-unsigned", "--grant", "bridge"]);
     let text = bench.failure(&["run", "eve/small"]);
-    assert!(text.starts_with("exit status 5\nerror[E-PACK-CAPABILITY]"), "{text}");
+    assert!(text.starts_with("exit status 5\nerror[E-TRUST-CAPABILITY]"), "{text}");
 }
 
 /// A behaviour with a filter that is no part of the engine.

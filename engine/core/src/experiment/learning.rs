@@ -49,6 +49,14 @@ pub struct BrokenOff {
     pub learned: Option<Learned>,
 }
 
+impl std::fmt::Display for BrokenOff {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.error.fmt(f)
+    }
+}
+
+impl std::error::Error for BrokenOff {}
+
 impl From<Box<BrokenOff>> for Box<Diagnostic> {
     fn from(broken: Box<BrokenOff>) -> Self {
         broken.error

@@ -66,7 +66,7 @@ impl Trust {
         let (code, message) = if self.allowed.is_empty() {
             ("E-NATIVE-DENIED", format!("'{shown}' is a native library and was not loaded"))
         } else {
-            ("E-NATIVE-DIGEST", format!("'{shown}' is not one of the native libraries that are allowed"))
+            ("E-NATIVE-DENIED", format!("'{shown}' is not one of the native libraries that are allowed"))
         };
         let help = format!(
             "a native filter can do all that you can do: read, change and send your files. If you trust it: \
@@ -127,6 +127,6 @@ mod tests {
         trust.allow_file(&file).unwrap();
         assert_eq!(trust.read(&path).unwrap(), (b"abc".to_vec(), digest.to_owned()));
         std::fs::write(&path, "abd").unwrap();
-        assert_eq!(trust.read(&path).err().unwrap().code, "E-NATIVE-DIGEST");
+        assert_eq!(trust.read(&path).err().unwrap().code, "E-NATIVE-DENIED");
     }
 }

@@ -154,6 +154,13 @@ impl StoredRun {
     /// # Errors
     /// As [`StoredRun::load`], and if a filter is missing or another than it was.
     pub fn load_with(folder: &Path, filters: Arc<Catalogue>) -> Result<Self> {
+        let (stored, source) = Self::read(folder, filters)?;
+        check_parts(folder, &source)?;
+        Ok(stored)
+    }
+
+    /// The run and its `run.toml`, for whoever reads log and summary too and so sees whether they belong to it.
+    pub(super) fn read(folder: &Path, filters: Arc<Catalogue>) -> Result<(Self, SourceText)> {
         let source = read_stored(&folder.join(RUN_FILE))?;
         let file: RunFile = toml::from_str(&source.text).map_err(|error| toml_error(&source, &error))?;
         if file.format != if file.leg.is_empty() { FORMAT } else { FORMAT_OF_LEGS } {
@@ -186,15 +193,14 @@ impl StoredRun {
         };
         let legs = file.leg.iter().map(leg).collect::<Result<Vec<_>>>()?;
         let plan = plan.after(legs);
-        check_parts(folder, &source)?;
         if plan.learns() {
             let policy = read_stored(&folder.join(POLICY_FILE))?;
             let decider = Decider::Learned(policy_of_run(&policy, &plan, &source)?);
-            return Ok(Self { plan, seed: file.seed, decider });
+            return Ok((Self { plan, seed: file.seed, decider }, source));
         }
         let texts = file.policy.iter().map(|policy| policy.check(&source)).collect::<Result<Vec<_>>>()?;
         let (plan, decider) = (with_policy_texts(plan, &texts)?, Decider::Combined);
-        Ok(Self { plan, seed: file.seed, decider })
+        Ok((Self { plan, seed: file.seed, decider }, source))
     }
 }
 

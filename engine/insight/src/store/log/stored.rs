@@ -31,8 +31,7 @@ impl RecordedRun {
     /// # Errors
     /// If one is missing or damaged, or the four do not belong together.
     pub fn load(folder: &Path, filters: Arc<Catalogue>) -> Result<Self> {
-        let stored = StoredRun::load_with(folder, filters)?;
-        let run = read_stored(&folder.join("run.toml"))?;
+        let (stored, run) = StoredRun::read(folder, filters)?;
         let path = folder.join(LOG_FILE);
         let bytes = read_bytes(&path)?;
         let log = read_log(&bytes, &stored.plan, stored.seed, &run.text).map_err(|mut error| {
