@@ -3,7 +3,7 @@ use std::sync::atomic::AtomicBool;
 
 use engine::diagnostic::SourceText;
 use engine::experiment::{Ledger, Overrides, Phase, Plan, Playback, Snapshot, learn, learn_into, rescore, test_into};
-use engine::reward::Behaviour;
+use engine::script::Behaviour;
 
 use crate::support::root;
 

@@ -13,7 +13,7 @@ use engine::diagnostic::{Diagnostic, Kind, Result, SourceText, printable};
 use engine::experiment::{Member, Overrides, Plan};
 use engine::filter::{Catalogue, Sources};
 use engine::learner::Policy;
-use engine::reward::Behaviour;
+use engine::script::Behaviour;
 use engine::world::Layout;
 use insight::store::{members_from_texts, policy_from_toml, policy_to_toml};
 

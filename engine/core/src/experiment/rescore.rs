@@ -13,7 +13,7 @@ use super::{Ledger, Phase, Plan, Playback};
 use crate::diagnostic::{Diagnostic, Result, printable};
 use crate::learner::{Learner, Policy, Transition};
 use crate::random::{Random, Stream};
-use crate::reward::Behaviour;
+use crate::script::Behaviour;
 use crate::settings::{SETTINGS, apply};
 
 /// What the rules said in one step.

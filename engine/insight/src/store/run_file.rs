@@ -15,7 +15,7 @@ use engine::experiment::{Leg, Member, Plan};
 use engine::filter::Catalogue;
 use engine::geometry::Twist;
 use engine::learner::{Carry, Policy};
-use engine::reward::Behaviour;
+use engine::script::Behaviour;
 use engine::settings::{FilterSettings, SETTINGS, Settings, Value, apply};
 use engine::world::Layout;
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use engine::diagnostic::{Diagnostic, Kind, Result, printable};
 use engine::experiment::{Plan, Rescored, RuleChange, RuleScore, plan_with_rules_of, rescore};
 use engine::learner::Policy;
-use engine::reward::Behaviour;
+use engine::script::Behaviour;
 use insight::report::{PolicyDiffData, PolicyState, StateChange, policy_diff};
 use insight::store::{RecordedRun, StoredRun};
 use serde::Serialize;

@@ -12,7 +12,7 @@ use super::{DIGEST_BYTES, PREFIX_BYTES, RunLog, read_log};
 use engine::diagnostic::{Kind, Result, SourceText};
 use engine::experiment::{Ledger, LedgerLeg, Plan, learn_into, test_into};
 use engine::filter::Catalogue;
-use engine::reward::Behaviour;
+use engine::script::Behaviour;
 use engine::world::Layout;
 
 const WORLD: &str = "[[wall]]\npoints_m = [[0, 0], [4, 0], [4, 4], [0, 4]]\nclosed = true\n\
