@@ -3,7 +3,6 @@
 use super::explain;
 use super::expression::{Inputs, Slot};
 use super::facts::Facts;
-use super::judging::Verdict;
 use super::loaded::{Loaded, variable};
 use super::readings::Part;
 use super::rule::{Clause, Rule, ScriptClause};
@@ -13,6 +12,15 @@ use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
 use rhai::{CallFnOptions, Dynamic, Map, Scope};
 use std::ops::Range;
 use std::sync::Arc;
+
+/// What the script says of one step.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Judgement {
+    /// The sum of all that fired.
+    pub reward: f64,
+    /// Whether the robot must be brought back.
+    pub recover: bool,
+}
 
 /// A script, and what it can read in this step.
 #[derive(Debug)]
@@ -105,10 +113,10 @@ impl Present {
     }
 
     /// What `fn reward` returns; its value may still be infinite.
-    pub(crate) fn reward(&self, span: &Range<usize>) -> Result<Verdict> {
+    pub(crate) fn reward(&self, span: &Range<usize>) -> Result<Judgement> {
         let result = self.call("reward")?;
         if let Some(reward) = number(&result) {
-            return Ok(Verdict { reward, recover: false });
+            return Ok(Judgement { reward, recover: false });
         }
         let wrong = |message: String| {
             Diagnostic::new("E-REWARD-VALUE", message)
@@ -126,7 +134,7 @@ impl Present {
         }
         let recover = map.get("recover").map_or(Ok(false), Dynamic::as_bool);
         match (map.get("value").and_then(number), recover) {
-            (Some(reward), Ok(recover)) => Ok(Verdict { reward, recover }),
+            (Some(reward), Ok(recover)) => Ok(Judgement { reward, recover }),
             (None, _) => wrong("the map that 'fn reward' returned has no number as its 'value'".to_owned()).fail(),
             (_, Err(_)) => {
                 wrong("'recover' in the map that 'fn reward' returned must be true or false".to_owned()).fail()

@@ -1,6 +1,6 @@
-//! One run's judging: refilled facts in, one verdict for each step out.
+//! One run's judging: refilled facts in, one judgement for each step out.
 
-use super::evaluate::Present;
+use super::evaluate::{Judgement, Present};
 use super::explain;
 use super::expression::Slot;
 use super::facts::Facts;
@@ -10,15 +10,6 @@ use super::views::{number, wrong_length};
 use crate::diagnostic::{Diagnostic, Result};
 use rhai::{Dynamic, Map};
 use std::sync::Arc;
-
-/// The verdict on one step.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Verdict {
-    /// The sum of all that fired.
-    pub reward: f64,
-    /// Whether the robot must be brought back.
-    pub recover: bool,
-}
 
 /// One run's judging of a behaviour: counters, and what was calibrated.
 #[derive(Debug)]
@@ -93,11 +84,11 @@ impl Judge {
     ///
     /// # Errors
     /// If the script fails or is stopped, or a value is not a finite number: in its line of the script.
-    pub fn judge(&mut self) -> Result<Verdict> {
+    pub fn judge(&mut self) -> Result<Judgement> {
         self.check_facts()?;
         let Self { present, held, needed, fired, .. } = self;
         fired.fill(None);
-        let mut verdict = Verdict::default();
+        let mut judgement = Judgement::default();
         let rules = &present.loaded.rules;
         for (index, rule) in rules.iter().enumerate() {
             if !present.condition(rule)? {
@@ -114,10 +105,10 @@ impl Judge {
                 return present.not_finite(&rule.shown(), value, rule.value_span.clone()).fail();
             }
             fired[index] = Some(value);
-            verdict.reward += value;
+            judgement.reward += value;
             if rule.recover {
-                verdict.recover = true;
-                return Ok(verdict);
+                judgement.recover = true;
+                return Ok(judgement);
             }
         }
         if let Some(span) = &present.loaded.reward {
@@ -126,10 +117,10 @@ impl Judge {
                 return present.not_finite("'fn reward'", own.reward, span.clone()).fail();
             }
             fired[rules.len()] = Some(own.reward);
-            verdict.reward += own.reward;
-            verdict.recover = own.recover;
+            judgement.reward += own.reward;
+            judgement.recover = own.recover;
         }
-        Ok(verdict)
+        Ok(judgement)
     }
 
     /// What each rule added in the last step, in the order of the behaviour's rules.

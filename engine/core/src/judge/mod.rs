@@ -20,8 +20,9 @@ pub(crate) mod running;
 pub(crate) mod sandbox;
 pub(crate) mod views;
 
+pub use evaluate::Judgement;
 pub use expression::Comparison;
 pub use facts::Facts;
-pub use judging::{Judge, Verdict};
+pub use judging::Judge;
 pub use readings::{Evidence, FactRead};
 pub use rule::RuleText;

@@ -53,7 +53,7 @@ impl Limits {
 ///
 /// # Errors
 /// If it never can, with the values that it would have to take.
-pub(crate) fn check(source: &SourceText, rule: &Rule, limits: &Limits) -> Result<()> {
+pub(crate) fn check_rule(source: &SourceText, rule: &Rule, limits: &Limits) -> Result<()> {
     let Clause::Native(condition) = &rule.condition else { return Ok(()) };
     let Some(why) = impossible(condition, limits) else { return Ok(()) };
     let help = match limits.laser.tilt_deg > 0.0 {

@@ -1,6 +1,5 @@
 //! A script, loaded and checked.
 
-use super::draft::Draft;
 use super::outline::Outline;
 use super::setup::Places;
 use crate::diagnostic::{Mistakes, Result, SourceText};
@@ -10,7 +9,6 @@ use crate::judge::rule::Clause;
 use crate::judge::{Judge, RuleText, reach};
 use crate::settings::{LaserSettings, Settings};
 use std::ops::Range;
-use std::path::Path;
 use std::sync::Arc;
 
 /// A script, loaded and checked; shared by all seeds.
@@ -25,23 +23,6 @@ pub struct Behaviour {
 }
 
 impl Behaviour {
-    /// Loads a script and checks it.
-    ///
-    /// # Errors
-    /// If the file cannot be read as a script, or anything in it is wrong: each mistake in the user's own line, with what
-    /// to write.
-    pub fn load(path: &Path) -> Result<Self> {
-        Draft::load(path)?.end()
-    }
-
-    /// The same from a text.
-    ///
-    /// # Errors
-    /// If anything in it is wrong.
-    pub fn parse(name: &str, source: SourceText) -> Result<Self> {
-        Draft::read(name, source)?.end()
-    }
-
     pub(super) fn new(name: &str, settings: Settings, places: Places, outline: Outline, loaded: Loaded) -> Self {
         let mut rules: Vec<RuleText> = loaded.rules.iter().map(|rule| rule.text.clone()).collect();
         let source = &loaded.source;
@@ -69,7 +50,7 @@ impl Behaviour {
         let (limits, source) = (reach::Limits::new(laser, drop_m), self.source());
         for rule in &self.loaded.rules {
             if !mistakes.within(source, &rule.condition_span) {
-                mistakes.take(reach::check(source, rule, &limits));
+                mistakes.take(reach::check_rule(source, rule, &limits));
             }
         }
     }

@@ -1,10 +1,14 @@
-//! What stands in the functions of a script: comparisons, loops over beams, and which names are used at all.
+//! The outline of a script: its rules, what stands in its functions, and which names are used at all.
 
 use super::chain::{Chain, Link};
-use super::outline::{BeamLoop, Gathers, Local, Outline, Reader, UnusedName};
+use super::outline::{BeamLoop, Gathers, Outline, UnusedName};
 use super::positions::body_end;
+use super::reader::{Local, Reader};
+use super::source::Code;
+use super::syntax::written_rules;
 use crate::judge::fact_table::GROUPS;
-use rhai::{AST, ASTNode, Expr, Stmt};
+use crate::judge::rule::Rule;
+use rhai::{AST, ASTNode, Expr, Scope, Stmt};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
@@ -15,8 +19,18 @@ struct Function {
     end: usize,
 }
 
+/// The outline of a script without a mistake, with its compiled rules.
+pub(super) fn outline_of(code: &Code, ast: &AST, constants: &Scope<'static>, rules: &[Rule]) -> Outline {
+    let reader = Reader { code, constants };
+    let written = written_rules(ast.statements());
+    let rules = rules.iter().zip(&written).map(|(rule, written)| reader.rule(rule, written)).collect();
+    let mut outline = Outline { rules, ..Outline::default() };
+    read(&reader, ast, &mut outline);
+    outline
+}
+
 /// Reads all functions, and which names the whole script uses.
-pub(super) fn read(reader: &Reader<'_>, ast: &AST, outline: &mut Outline) {
+fn read(reader: &Reader<'_>, ast: &AST, outline: &mut Outline) {
     let functions = functions(reader, ast);
     let reached = reached(reader, &functions);
     let bodies = ast.clone_functions_only();

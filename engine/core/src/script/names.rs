@@ -16,10 +16,10 @@ use std::collections::BTreeSet;
 
 /// Checks the names of a script: adds every mistake to `mistakes`, and what it finds of beams and cells to `needs`.
 /// Gives the names that nothing defines and that look like no other name.
-pub(super) fn check(
+pub(super) fn check_names(
     code: &Code,
     tree: &Tree,
-    spoilt: &Spoilt,
+    spoilt: &Spoilt<'_>,
     needs: &mut Needs,
     mistakes: &mut Mistakes,
 ) -> BTreeSet<String> {
@@ -49,7 +49,7 @@ struct Names<'a> {
     facts_names: Vec<String>,
     /// Variables at the top level; nothing if the parser knows every variable.
     variables: Option<BTreeSet<&'a str>>,
-    spoilt: &'a Spoilt,
+    spoilt: &'a Spoilt<'a>,
     calibrates: bool,
     in_function: bool,
     needs: &'a mut Needs,

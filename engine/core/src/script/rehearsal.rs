@@ -1,6 +1,5 @@
 //! A script tried once at load, so that what must fail fails before learning starts.
 
-use super::source::Code;
 use super::spoilt::Spoilt;
 use crate::diagnostic::{Kind, Mistakes, Result};
 use crate::judge::Judge;
@@ -17,9 +16,8 @@ const MOST_TRIED: usize = 100;
 /// If a limit stops the script.
 pub(super) fn rehearse(
     mut judge: Judge,
-    code: &Code,
     settings: &Settings,
-    spoilt: &mut Spoilt,
+    spoilt: &mut Spoilt<'_>,
     mistakes: &mut Mistakes,
 ) -> Result<()> {
     for (range_m, sees) in [(settings.laser.max_range_m, false), (settings.laser.min_range_m, true)] {
@@ -36,21 +34,21 @@ pub(super) fn rehearse(
             spoilt.insert("calibrate");
             spoilt.insert("calibrated");
         }
-        everything(&judge, code, spoilt, mistakes)?;
+        everything(&judge, spoilt, mistakes)?;
     }
     Ok(())
 }
 
-fn everything(judge: &Judge, code: &Code, spoilt: &Spoilt, mistakes: &mut Mistakes) -> Result<()> {
+fn everything(judge: &Judge, spoilt: &Spoilt<'_>, mistakes: &mut Mistakes) -> Result<()> {
     let present = judge.present();
     for rule in &present.loaded.rules {
         if mistakes.count() > MOST_TRIED {
             return Ok(());
         }
-        if !spoilt.touches(code, &rule.condition_span, mistakes) {
+        if !spoilt.touches(&rule.condition_span, mistakes) {
             certain(present.condition(rule), mistakes)?;
         }
-        if !spoilt.touches(code, &rule.value_span, mistakes) {
+        if !spoilt.touches(&rule.value_span, mistakes) {
             certain(present.value(rule), mistakes)?;
         }
     }

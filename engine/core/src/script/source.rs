@@ -103,7 +103,7 @@ pub(super) struct Code {
 ///
 /// # Errors
 /// With the place of the first character that must not be there, or of the comment or text that never ends.
-pub(super) fn check(source: SourceText) -> Result<Code> {
+pub(super) fn check_text(source: SourceText) -> Result<Code> {
     let source = match source.text.strip_prefix('\u{feff}') {
         Some(rest) => SourceText::new(source.path.clone(), rest.to_owned()),
         None => source,

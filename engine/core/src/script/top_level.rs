@@ -19,7 +19,7 @@ pub(super) fn run(
     code: &Code,
     tree: &Tree,
     log: &Log,
-    undefined: &BTreeSet<String>,
+    spoilt: &mut Spoilt<'_>,
     mistakes: &mut Mistakes,
 ) -> Result<Scope<'static>, Diagnostic> {
     let mut scope = Scope::new();
@@ -31,8 +31,8 @@ pub(super) fn run(
     }
     let mut failed = BTreeSet::new();
     for _ in 0..=MOST_MISTAKES {
-        let spoilt = Spoilt::new(code, &tree.ast, &tree.known, undefined, mistakes);
-        let sound = |number: usize| !failed.contains(&number) && !spoilt.touches_statement(code, number, mistakes);
+        spoilt.spread(mistakes);
+        let sound = |number: usize| !failed.contains(&number) && !spoilt.touches_statement(number, mistakes);
         let statements = tree.ast.statements().iter().enumerate();
         let statements = statements.filter_map(|(number, statement)| match (sound(number), statement) {
             (true, statement) => Some(statement.clone()),

@@ -2,7 +2,7 @@
 
 use super::super::setup_table::SETUP;
 use super::super::{Behaviour, definitions, reference};
-use crate::judge::Verdict;
+use crate::judge::Judgement;
 use crate::judge::fact_table::FACTS;
 use crate::judge::functions::FUNCTIONS;
 use std::path::{Path, PathBuf};
@@ -78,10 +78,10 @@ fn the_platform_script_sees_an_edge_beside_the_front_beam() {
         judge.facts_mut().ranges_m[beam] = (0.537 / libm::cos(angle)).clamp(0.2, 8.192) as f32;
     }
     judge.calibrate().unwrap();
-    assert_eq!(judge.judge().unwrap(), Verdict::default());
+    assert_eq!(judge.judge().unwrap(), Judgement::default());
     judge.facts_mut().ranges_m[130] += 0.16;
-    assert_eq!(judge.judge().unwrap(), Verdict { reward: -1.0, recover: true });
+    assert_eq!(judge.judge().unwrap(), Judgement { reward: -1.0, recover: true });
     judge.facts_mut().ranges_m[130] -= 0.16;
     judge.facts_mut().ranges_m[131] += 0.16;
-    assert_eq!(judge.judge().unwrap(), Verdict::default());
+    assert_eq!(judge.judge().unwrap(), Judgement::default());
 }

@@ -1,30 +1,63 @@
-//! One rule, checked and compiled.
+//! The rules of a script, checked and compiled.
 
 use super::compile::Compiler;
 use super::parts::parts;
-use super::positions::first;
+use super::positions::span;
 use super::source::Code;
 use super::spoilt::Spoilt;
-use super::syntax::{TimeUnit, WrittenRule};
-use crate::diagnostic::{Diagnostic, Mistakes, Result};
+use super::syntax::{TimeUnit, WrittenRule, written_rules};
+use crate::diagnostic::{Diagnostic, Mistakes, Result, printable};
 use crate::judge::explain;
 use crate::judge::expression::{Flag, Number, Typed};
+use crate::judge::needs::Needs;
 use crate::judge::rule::{Clause, Persistence, Rule, RuleText, ScriptClause};
-use rhai::{AST, ASTNode, Expr, Module, Shared, Stmt};
-use std::collections::BTreeSet;
+use rhai::{AST, ASTNode, Expr, Module, Scope, Shared, Stmt};
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 /// Longest persistence.
 const MAX_TIME: f64 = 1e6;
 
+/// Every rule without a mistake in it.
+pub(super) fn rules(
+    code: &Code,
+    ast: &AST,
+    constants: &Scope<'static>,
+    needs: &mut Needs,
+    spoilt: &Spoilt<'_>,
+    mistakes: &mut Mistakes,
+) -> Vec<Rule> {
+    let mut rules: Vec<Rule> = Vec::new();
+    let mut lines: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut compiler = Compiler { constants, needs };
+    let has_reward = ast.iter_functions().any(|function| function.name == "reward");
+    let written = written_rules(ast.statements());
+    for written in &written {
+        let name_at = |message: String, label: &str| {
+            explain::mistake(&code.source, "E-SCRIPT-RULE", written.name_position, message, label)
+        };
+        let (line, _) = code.source.position(explain::offset(&code.source, written.position));
+        if let Some(before) = lines.get(written.name) {
+            let wrong =
+                name_at(format!("there are two rules called \"{}\"", printable(written.name)), "the second one");
+            mistakes.add(wrong.help(format!("choose another name; the first is in line {before}")));
+        } else if written.name == "reward" && has_reward {
+            mistakes.add(name_at("a rule cannot be called \"reward\" beside 'fn reward'".to_owned(), "here"));
+        }
+        lines.entry(written.name).or_insert(line);
+        rules.extend(compiled(code, written, ast.shared_lib(), &mut compiler, spoilt, mistakes));
+    }
+    rules
+}
+
 /// Checks and compiles a rule; nothing if there is a mistake in it. Each is added to `mistakes`: an empty name, a
 /// condition that is none, a value that is no number, a time that is no time.
-pub(super) fn compiled(
+fn compiled(
     code: &Code,
     written: &WrittenRule<'_>,
     library: &Shared<Module>,
     compiler: &mut Compiler<'_>,
-    spoilt: &Spoilt,
+    spoilt: &Spoilt<'_>,
     mistakes: &mut Mistakes,
 ) -> Option<Rule> {
     let source = &code.source;
@@ -39,7 +72,7 @@ pub(super) fn compiled(
     let condition_span = span(code, written.condition);
     let value_span = span(code, written.value);
     let time_span = written.time.map_or(0..0, |(time, _)| span(code, time));
-    let sound = |span: &Range<usize>, mistakes: &Mistakes| !spoilt.touches(code, span, mistakes);
+    let sound = |span: &Range<usize>, mistakes: &Mistakes| !spoilt.touches(span, mistakes);
     let condition = sound(&condition_span, mistakes)
         .then(|| condition(code, written, &condition_span, library, compiler))
         .and_then(|condition| mistakes.take(condition));
@@ -130,33 +163,4 @@ fn persistence(code: &Code, written: &WrittenRule<'_>, compiler: &mut Compiler<'
             .help("write 'seconds' instead")
             .fail(),
     }
-}
-
-/// The bytes of an expression: from its first token to what ends it.
-fn span(code: &Code, expr: &Expr) -> Range<usize> {
-    let start = explain::offset(&code.source, first(expr));
-    let tail = &code.plain[start..];
-    let mut depth = 0_i32;
-    let mut before = ' ';
-    for (index, c) in tail.char_indices() {
-        match c {
-            '(' | '[' | '{' => depth += 1,
-            ')' | ']' | '}' => depth -= 1,
-            _ => {}
-        }
-        let word = !before.is_alphanumeric() && before != '_' && before != '.';
-        let rest = &tail[index..];
-        let stop = matches!(c, ';' | ',') || rest.starts_with("=>") || word && ends_expression(rest);
-        if depth < 0 || depth == 0 && stop {
-            return start..start + tail[..index].trim_end().len();
-        }
-        before = c;
-    }
-    start..start + tail.trim_end().len()
-}
-
-fn ends_expression(rest: &str) -> bool {
-    ["for", "then", "steps", "step", "seconds", "second"].iter().any(|word| {
-        rest.strip_prefix(word).is_some_and(|tail| !tail.starts_with(|c: char| c.is_alphanumeric() || c == '_'))
-    })
 }
