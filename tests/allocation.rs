@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use engine::experiment::{Ledger, Overrides, Plan, learn_into};
-use engine::reward::Behaviour;
+use engine::script::Behaviour;
 
 use crate::support::root;
 

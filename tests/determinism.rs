@@ -3,7 +3,7 @@ use std::sync::atomic::AtomicBool;
 
 use dispatch::Processor;
 use engine::experiment::{Overrides, Plan, learn};
-use engine::reward::Behaviour;
+use engine::script::Behaviour;
 
 use crate::support::{Bench, root};
 

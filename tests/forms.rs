@@ -7,7 +7,7 @@ use std::time::Instant;
 use engine::experiment::{Overrides, Plan, learn};
 use engine::filter::{Catalogue, Chain};
 use engine::random::{Random, Stream};
-use engine::reward::Behaviour;
+use engine::script::Behaviour;
 use engine::sensors::observation::Image;
 use engine::settings::FilterSettings;
 use filter_api::{Format, Frame, FrameMut};

@@ -5,7 +5,7 @@ use engine::diagnostic::SourceText;
 use engine::experiment::{
     Ledger, Overrides, Phase, Plan, Playback, Snapshot, learn, learn_into, rescore, test_and_watch,
 };
-use engine::reward::Behaviour;
+use engine::script::Behaviour;
 
 use crate::support::root;
 

@@ -3,7 +3,7 @@ use std::sync::Arc;
 
 use engine::diagnostic::Result;
 use engine::experiment::{Overrides, Plan};
-use engine::reward::Behaviour;
+use engine::script::Behaviour;
 use insight::lint::{self, Severity};
 
 use crate::support::{Bench, root};

@@ -2,7 +2,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use engine::experiment::{Overrides, Plan};
-use engine::reward::Behaviour;
+use engine::script::Behaviour;
 use engine::world::Layout;
 
 use crate::support::root;
@@ -37,5 +37,5 @@ fn every_script_that_ships_is_ready_to_be_learned() {
 #[test]
 fn the_reference_page_is_what_the_engine_prints() {
     let page = std::fs::read_to_string(root().join("scripts/README.md")).unwrap();
-    assert!(page == engine::reward::reference(), "run: engine reference > scripts/README.md");
+    assert!(page == engine::script::reference(), "run: engine reference > scripts/README.md");
 }

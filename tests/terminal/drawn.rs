@@ -1,7 +1,7 @@
 use engine::diagnostic::SourceText;
 use engine::experiment::Leg;
 use engine::learner::Carry;
-use engine::reward::Behaviour;
+use engine::script::Behaviour;
 use ratatui::crossterm::event::KeyCode;
 use ratatui::style::{Color, Modifier};
 use watch::Board;

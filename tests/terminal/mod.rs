@@ -10,7 +10,7 @@ use std::sync::atomic::AtomicBool;
 
 use engine::diagnostic::SourceText;
 use engine::experiment::{Ledger, Overrides, Plan, learn_into, test_and_watch};
-use engine::reward::Behaviour;
+use engine::script::Behaviour;
 use engine::world::Layout;
 use insight::page::{Document, Moments};
 use ratatui::buffer::Buffer;

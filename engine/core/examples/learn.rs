@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use engine::experiment::{Overrides, Plan, learn, test};
-use engine::reward::Behaviour;
+use engine::script::Behaviour;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts/corridor.rhai");

@@ -8,8 +8,8 @@ use std::sync::atomic::AtomicBool;
 use engine::experiment::{Cycle, Learning, Ledger, Overrides, Phase, Plan, test};
 use engine::learner::{Carry, Learner, Mirror, Policy, PolicyRow, Task, Transition};
 use engine::random::Random;
-use engine::reward::Behaviour;
 use engine::saved::{Loading, Saving, Unfit};
+use engine::script::Behaviour;
 use engine::settings::LearnerSettings;
 
 /// The mean reward of each action in each state.

@@ -16,8 +16,8 @@ use engine::experiment::{
 use engine::geometry::{Pose, Twist};
 use engine::learner::{Policy, TableLearner};
 use engine::random::{Random, Stream};
-use engine::reward::Behaviour;
 use engine::robot::{Robot, Whereabouts};
+use engine::script::Behaviour;
 use engine::sensors::observation::Observation;
 
 const SCRIPT: &str = "world(\"room\");\n\

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use engine::experiment::{Cycle, Overrides, Phase, Plan, in_parallel};
 use engine::random::{Random, Stream};
-use engine::reward::Behaviour;
+use engine::script::Behaviour;
 
 /// Steps of each robot.
 const STEPS: u64 = 500;

@@ -4,7 +4,7 @@
 //!
 //! ```text
 //!   world -> sensors -> filter -> state -> learner -> (action) -> robot -> world
-//!                                   \-> reward: the script judges ->/
+//!                                   \-> judge: the rules of the script ->/
 //! ```
 //!
 //! `experiment` is the loop around them, `store` and `report` are what a run leaves, `settings`, `diagnostic`, `random`
@@ -26,7 +26,9 @@ pub mod filter;
 
 pub mod state;
 
-pub mod reward;
+pub mod judge;
+
+pub mod script;
 
 pub mod learner;
 

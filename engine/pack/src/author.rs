@@ -13,7 +13,7 @@ use super::evidence::{Evidence, Proof, measure};
 use super::manifest::{self, Capabilities, Dependency, Entry, FileLine, Manifest, toml_error};
 use super::marks::STEPS;
 use super::{Digest, MAX_MANIFEST_BYTES, MAX_PACK_BYTES, MAX_SEEDS, Pack, PackName, Runnable, archive, malformed};
-use engine::diagnostic::{Diagnostic, Kind, Result, SourceText, nearest_name, printable};
+use engine::diagnostic::{Diagnostic, Result, SourceText, nearest_name, printable};
 use engine::experiment::{Overrides, Progress};
 use engine::filter::Sources;
 use engine::geometry::Point2;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::manifest::FILE;
 use super::{Digest, MAX_PACK_BYTES, Manifest, archive, distrusted, malformed};
-use engine::diagnostic::{Diagnostic, Kind, Result, SourceText, printable};
+use engine::diagnostic::{Diagnostic, Result, SourceText, printable};
 
 /// A pack whose form is right: harmless names, and exactly the files of its manifest. Who made it is another question.
 #[derive(Debug, Clone)]

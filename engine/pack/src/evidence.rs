@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::marks::{Marks, STEPS};
 use super::{Digest, MAX_EVIDENCE_STEPS, MAX_SEED_STEPS, MAX_SEEDS, Pack, Runnable, fingerprint, malformed};
-use engine::diagnostic::{Diagnostic, Kind, Result};
+use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{
     Plan, Progress, RunLog, SeedRun, Summary, TestRun, Trail, WINDOW_STEPS, in_parallel, run_seed,
 };

@@ -9,7 +9,7 @@ use base64::engine::general_purpose::STANDARD;
 
 use super::author::PICTURE;
 use super::{Claim, Evidence, Pack, Signature, TrustStore};
-use engine::diagnostic::{Diagnostic, Kind, Result, printable};
+use engine::diagnostic::{Diagnostic, Result, printable};
 
 /// The largest picture that is shown, bytes.
 const MAX_PICTURE_BYTES: usize = 4 << 20;

@@ -45,7 +45,7 @@ pub use trust::{Signer, TrustStore, TrustedKey};
 
 use std::path::Path;
 
-use engine::diagnostic::{Diagnostic, Kind, Result};
+use engine::diagnostic::{Diagnostic, Result};
 
 /// The largest pack, bytes.
 pub const MAX_PACK_BYTES: usize = 64 << 20;

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::manifest::toml_error;
 use super::{Digest, MAX_MANIFEST_BYTES, Pack, PackName, Signer, bundle, distrusted, malformed};
-use engine::diagnostic::{Diagnostic, Kind, Result, SourceText, nearest_name, printable};
+use engine::diagnostic::{Diagnostic, Result, SourceText, nearest_name, printable};
 use insight::report::write_atomic;
 
 /// The format of the file.

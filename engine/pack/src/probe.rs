@@ -7,7 +7,7 @@ use super::Digest;
 use engine::diagnostic::{Result, SourceText};
 use engine::experiment::{Plan, learn, test};
 use engine::filter::Catalogue;
-use engine::reward::Behaviour;
+use engine::script::Behaviour;
 use engine::world::Layout;
 
 /// A short run that touches every part: walls, texture, lag and noise, laser, filter, rules, recovery and learner.

@@ -9,11 +9,11 @@ use std::sync::Arc;
 use tempfile::TempDir;
 
 use super::{EntryPath, Pack, malformed};
-use engine::diagnostic::{Diagnostic, Kind, Result, SourceText, printable};
+use engine::diagnostic::{Diagnostic, Result, SourceText, printable};
 use engine::experiment::{Overrides, Plan};
 use engine::filter::{Catalogue, Sources};
 use engine::learner::Policy;
-use engine::reward::Behaviour;
+use engine::script::Behaviour;
 use engine::world::Layout;
 use insight::store::{policy_from_toml, policy_to_toml, with_policy_texts};
 

@@ -11,7 +11,7 @@ use super::bundle::read_limited;
 use super::entry_path::EntryPath;
 use super::runnable::inside;
 use super::{Capabilities, Digest, MAX_PACK_BYTES, PackName, distrusted, malformed};
-use engine::diagnostic::{Diagnostic, Kind, Result, printable};
+use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::experiment::{Overrides, Plan};
 use engine::filter::{Catalogue, Form, Sources};
 use insight::report::write_atomic;

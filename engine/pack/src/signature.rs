@@ -5,7 +5,7 @@ use std::io::Cursor;
 use minisign::{KeyPair, PublicKey, SecretKey, SecretKeyBox, SignatureBox};
 
 use super::{Pack, distrusted};
-use engine::diagnostic::{Diagnostic, Kind, Result, printable};
+use engine::diagnostic::{Diagnostic, Result, printable};
 
 /// The first word of the trusted comment: a signature for anything else never fits a pack.
 const DOMAIN: &str = "engine-pack-v1";

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::manifest::toml_error;
 use super::name::check_part;
 use super::{MAX_MANIFEST_BYTES, Pack, Signature, bundle, distrusted, key_id};
-use engine::diagnostic::{Diagnostic, Kind, Result, SourceText, printable};
+use engine::diagnostic::{Diagnostic, Result, SourceText, printable};
 use insight::report::write_atomic;
 
 /// The format of `trust.toml`.

@@ -12,7 +12,7 @@ use engine::experiment::{
     Overrides, Plan, Summary, TestFigures, TestRun, Trail, WINDOW_STEPS, in_parallel, learn, test, test_and_watch,
 };
 use engine::learner::Policy;
-use engine::reward::Behaviour;
+use engine::script::Behaviour;
 
 /// Seeds, steps of learning and steps of a test in a quick check.
 const QUICK: (u64, u64, u64) = (2, 800, 200);

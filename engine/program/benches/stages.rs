@@ -12,7 +12,7 @@ use std::sync::atomic::AtomicBool;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use engine::experiment::{Overrides, Plan, learn};
-use engine::reward::Behaviour;
+use engine::script::Behaviour;
 use stages::{SAMPLES, STAGES, Stages};
 
 /// Steps of learning that are timed together; their set-up is timed with them.

@@ -10,7 +10,7 @@ use super::files::Files;
 use super::findings;
 use super::relearn::Relearner;
 use super::session::MOST_LEDGER_BYTES;
-use engine::diagnostic::{Diagnostic, Kind, Result};
+use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Decider, Learned, Ledger, Plan, RecordShape, Tally, Trail, in_parallel};
 use engine::learner::Policy;
 use insight::store::{policy_files, with_policies};

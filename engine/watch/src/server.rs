@@ -22,7 +22,7 @@ use super::board::{Board, SavedRun};
 use super::guard::{Guard, Refusal, read_head};
 use super::relearn::Asker;
 use super::socket;
-use engine::diagnostic::{Diagnostic, Kind, Result};
+use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::Phase;
 use insight::page::{Document, Page, Shot, page, shot_of};
 

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::board::WatchedSeed;
-use engine::diagnostic::{Diagnostic, Kind, Result};
+use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Learning, Ledger, Leg, MOST_STEPS, Plan, RecordShape, WINDOW_STEPS, in_parallel};
 use engine::learner::Carry;
 

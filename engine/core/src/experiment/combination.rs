@@ -4,7 +4,7 @@ use super::{Eyes, Plan};
 use crate::diagnostic::{Diagnostic, Result, SourceText, printable};
 use crate::filter::Chain;
 use crate::learner::Policy;
-use crate::reward::Behaviour;
+use crate::script::Behaviour;
 use crate::settings::{FilterSettings, GridSettings, Settings};
 use crate::state::{Grid, GridMap};
 

@@ -2,7 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, Result};
 use crate::geometry::Twist;
-use crate::reward::{Facts, Judge};
+use crate::judge::{Facts, Judge};
 use crate::robot::Robot;
 use crate::sensors::observation::{Image, Observation};
 use crate::state::{Grid, StateMap};

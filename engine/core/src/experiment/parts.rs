@@ -4,8 +4,9 @@ use super::combination;
 use crate::diagnostic::{Diagnostic, Mistakes, Result};
 use crate::filter::{Catalogue, Chain, ChainError};
 use crate::geometry::Twist;
+use crate::judge::Judge;
 use crate::learner::Mirror;
-use crate::reward::{Behaviour, Judge, Unread};
+use crate::script::{Behaviour, Unread};
 use crate::settings::Settings;
 use crate::state::{Grid, GridMap, StateMap};
 

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{Ledger, Phase, Plan, Playback};
 use crate::diagnostic::Result;
-use crate::reward::{Evidence, FactRead, Judge, RuleText};
+use crate::judge::{Evidence, FactRead, Judge, RuleText};
 
 /// One step with its reasons.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -12,7 +12,7 @@ use super::legs::first_fixed_difference;
 use super::{Ledger, Phase, Plan, Playback};
 use crate::diagnostic::{Diagnostic, Result, printable};
 use crate::learner::{Ending, Learner, Policy, TableLearner, Transition};
-use crate::reward::Behaviour;
+use crate::script::Behaviour;
 use crate::settings::{LearnerKind, SETTINGS, apply};
 
 /// What the rules said in one step.

@@ -2,7 +2,7 @@
 
 use super::Finding;
 use engine::experiment::Plan;
-use engine::reward::Gathers;
+use engine::script::Gathers;
 
 pub(super) fn check(plan: &Plan, findings: &mut Vec<Finding>) {
     for found in &plan.behaviour.outline().loops {

@@ -3,7 +3,8 @@
 use super::Finding;
 use engine::diagnostic::printable;
 use engine::experiment::Plan;
-use engine::reward::{Compared, Comparison, Condition};
+use engine::judge::Comparison;
+use engine::script::{Compared, Condition};
 
 pub(super) fn check(plan: &Plan, findings: &mut Vec<Finding>) {
     let (outline, rules) = (plan.behaviour.outline(), plan.behaviour.rules());

@@ -2,7 +2,7 @@
 
 use super::Finding;
 use engine::experiment::Plan;
-use engine::reward::Compared;
+use engine::script::Compared;
 
 /// What a fact can be.
 struct Reach {

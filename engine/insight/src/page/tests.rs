@@ -7,7 +7,7 @@ use super::*;
 use crate::report::base64;
 use engine::diagnostic::SourceText;
 use engine::experiment::{Ledger, Overrides, Phase, Plan, Playback, learn_into};
-use engine::reward::Behaviour;
+use engine::script::Behaviour;
 use engine::settings::Settings;
 use engine::world::Layout;
 

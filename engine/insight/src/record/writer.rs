@@ -13,7 +13,7 @@ use serde_json::json;
 
 use super::Recording;
 use super::scene::{pose, turned, update};
-use engine::diagnostic::{Diagnostic, Kind, Result};
+use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Ledger, Phase, Plan, Playback, Snapshot, Step};
 
 /// The frame of the world, and that of the robot.

@@ -17,7 +17,7 @@ use engine::experiment::{Decider, Leg, Plan};
 use engine::filter::Catalogue;
 use engine::geometry::Twist;
 use engine::learner::Carry;
-use engine::reward::Behaviour;
+use engine::script::Behaviour;
 use engine::settings::{SETTINGS, Settings, Value, apply};
 use engine::world::Layout;
 

@@ -3,7 +3,7 @@
 use std::io::IsTerminal;
 use std::path::Path;
 
-use engine::diagnostic::{Diagnostic, Kind, Result, all_codes, code_page, excerpt, nearest_name, printable};
+use engine::diagnostic::{Diagnostic, Result, all_codes, code_page, excerpt, nearest_name, printable};
 use engine::experiment::{Phase, Plan, Playback, RuleReasons, StepReasons};
 use engine::robot::Robot;
 use insight::folder::create_folder;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use engine::diagnostic::{Diagnostic, Kind, Result, printable};
+use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::experiment::Decider;
 use engine::experiment::{Overrides, Plan};
 use engine::filter::{Catalogue, Chain};

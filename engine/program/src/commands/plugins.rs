@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use engine::diagnostic::{Diagnostic, Kind, Result, printable};
+use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::filter::{Catalogue, Entry, Form, conformance};
 use filter_api::{Descriptor, Format, Parameter, ParameterKind};
 use serde_json::{Value, json};

@@ -4,7 +4,7 @@ use crate::cli::ReferenceArguments;
 use crate::console::{Console, ConsoleError};
 
 pub(crate) fn run(arguments: &ReferenceArguments, console: &mut Console) -> Result<u8, ConsoleError> {
-    let text = if arguments.definitions { engine::reward::definitions() } else { engine::reward::reference() };
+    let text = if arguments.definitions { engine::script::definitions() } else { engine::script::reference() };
     console.raw(&text)?;
     Ok(0)
 }

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::Ordering;
 
-use engine::diagnostic::{Diagnostic, Kind, Result, printable};
+use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::experiment::{Decider, Ledger, Overrides, Phase, Plan, Playback, Record, RuleScore, RunLog, run_seed};
 use engine::learner::Carry;
 use insight::store::{RecordedRun, StoredRun};

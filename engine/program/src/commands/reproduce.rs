@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-use engine::diagnostic::{Diagnostic, Kind, nearest_name, printable};
+use engine::diagnostic::{Diagnostic, nearest_name, printable};
 use insight::folder::{create_folder, write_json};
 use insight::report::write_atomic;
 use paper::{CLAIMS, Campaign, Options, Reproduction, Verdict, figures, markdown, page, rows};

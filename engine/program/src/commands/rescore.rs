@@ -3,10 +3,10 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use engine::diagnostic::{Diagnostic, Kind, Result, printable};
+use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::experiment::{Plan, Rescored, RuleChange, RuleScore, plan_with_rules_of, rescore};
 use engine::learner::Policy;
-use engine::reward::Behaviour;
+use engine::script::Behaviour;
 use insight::folder::{create_folder, write_json};
 use insight::report::{PolicyDiffData, PolicyState, StateChange, policy_diff};
 use insight::store::{RecordedRun, StoredRun};

@@ -5,7 +5,7 @@ use crate::console::{Console, ConsoleError};
 
 #[cfg(not(feature = "serve"))]
 pub(crate) fn run(arguments: &WatchArguments, _: &mut Console) -> Result<u8, ConsoleError> {
-    use engine::diagnostic::{Diagnostic, Kind};
+    use engine::diagnostic::Diagnostic;
     let message = "this program was built without the live page";
     let error = Diagnostic::new("E-WATCH-FEATURE", message);
     let feature = if arguments.tui { "tui" } else { "serve" };
@@ -133,7 +133,7 @@ fn in_terminal(
 
 #[cfg(all(feature = "serve", not(feature = "tui")))]
 fn without_terminal() -> ConsoleError {
-    use engine::diagnostic::{Diagnostic, Kind};
+    use engine::diagnostic::Diagnostic;
     let error = Diagnostic::new("E-WATCH-TUI", "this program was built without the terminal's live view");
     ConsoleError::Failed(Box::new(error.help("build it in: cargo build --release --features tui")))
 }

@@ -42,7 +42,7 @@ pub use view::{Panel, View};
 
 use super::board::Board;
 use super::relearn::Asker;
-use engine::diagnostic::{Diagnostic, Kind, Result};
+use engine::diagnostic::{Diagnostic, Result};
 use player::Player;
 
 /// From one drawing to the next while playing.

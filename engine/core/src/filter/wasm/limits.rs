@@ -4,7 +4,7 @@ use std::path::Path;
 
 use wasmparser::{BinaryReaderError, CompositeInnerType, FunctionBody, Operator, Parser, Payload, TypeSectionReader};
 
-use crate::diagnostic::{self, Diagnostic, Kind, printable};
+use crate::diagnostic::{self, Diagnostic, printable};
 
 const MOST_FUNCTIONS: u32 = 10_000;
 const MOST_CODE_BYTES: usize = 2 << 20;

@@ -15,7 +15,7 @@ use wasmtime::{
 
 use super::layout::{FRAME_BYTES, Fault, PARAMETER_BYTES, PLUGIN_BYTES, describe};
 use super::limits::damaged;
-use crate::diagnostic::{Diagnostic, Kind, Result, printable};
+use crate::diagnostic::{Diagnostic, Result, printable};
 use crate::filter::catalogue::{Entry, Form};
 use crate::filter::described::Described;
 use crate::filter::running::{Running, check_frames, failed, refused};

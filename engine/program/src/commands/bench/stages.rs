@@ -3,13 +3,13 @@
 use std::hint::black_box;
 use std::sync::Arc;
 
-use engine::diagnostic::{Diagnostic, Kind, Result};
+use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Cycle, Ledger, Observer, Plan, Step};
 use engine::filter::Chain;
 use engine::geometry::{Isometry3, Pose};
+use engine::judge::{Facts, Judge};
 use engine::learner::{Learner, TableLearner, Transition};
 use engine::random::{Random, Stream};
-use engine::reward::{Facts, Judge};
 use engine::robot::SimulatedRobot;
 use engine::sensors::observation::{Image, Scan};
 use engine::sensors::{Camera, Laser};

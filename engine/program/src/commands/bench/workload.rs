@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::sync::Arc;
 
-use engine::diagnostic::{Diagnostic, Kind, Result, SourceText};
+use engine::diagnostic::{Diagnostic, Result, SourceText};
 use engine::experiment::{Cycle, Overrides, Plan};
 use engine::geometry::Twist;
 use engine::robot::Robot;

@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use engine::diagnostic::{Diagnostic, Kind, Result, printable};
+use engine::diagnostic::{Diagnostic, Result, printable};
 use pack::{Offer, PACK_ENDING, Pack, Signature};
 
 use super::places::signature_of;

@@ -3,7 +3,7 @@
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
-use engine::diagnostic::{Diagnostic, Kind, Result};
+use engine::diagnostic::{Diagnostic, Result};
 use insight::report::write_atomic;
 use pack::{Pack, Password, key_id, key_line, needs_password, new_keys};
 use serde_json::json;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use engine::diagnostic::{Diagnostic, Kind};
+use engine::diagnostic::Diagnostic;
 use engine::experiment::{Progress, WINDOW_STEPS};
 use insight::report::write_atomic;
 use pack::{Pack, PackName, draft, scaffold};

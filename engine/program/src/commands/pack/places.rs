@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use engine::diagnostic::{Diagnostic, Kind, Result};
+use engine::diagnostic::{Diagnostic, Result};
 use pack::{Dependency, Lock, Locked, Pack, Shelf, Signature, TrustStore};
 
 /// The lock of the folder where the user stands.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use engine::diagnostic::{Diagnostic, Kind, Result, printable};
+use engine::diagnostic::{Diagnostic, Result, printable};
 use insight::folder::create_folder;
 use insight::report::write_atomic;
 use pack::{Pack, Signature};

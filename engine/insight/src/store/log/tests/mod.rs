@@ -12,7 +12,7 @@ use super::{PREFIX_BYTES, log_to_bytes, read_log};
 use engine::diagnostic::{Kind, Result, SourceText};
 use engine::experiment::{DIGEST_BYTES, Ledger, LedgerLeg, Plan, RunLog, learn_into, test_and_watch};
 use engine::filter::Catalogue;
-use engine::reward::Behaviour;
+use engine::script::Behaviour;
 use engine::world::Layout;
 
 const WORLD: &str = "[[wall]]\npoints_m = [[0, 0], [4, 0], [4, 4], [0, 4]]\nclosed = true\n\

@@ -1,0 +1,153 @@
+//! Rules and functions evaluated on the present facts.
+
+use super::explain;
+use super::expression::{Inputs, Slot};
+use super::facts::Facts;
+use super::loaded::{Loaded, variable};
+use super::readings::Part;
+use super::rule::{Clause, Rule, ScriptClause};
+use super::running;
+use super::views::{All, number, view};
+use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
+use rhai::{CallFnOptions, Dynamic, Map, Scope};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// What the script says of one step.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Judgement {
+    /// The sum of all that fired.
+    pub reward: f64,
+    /// Whether the robot must be brought back.
+    pub recover: bool,
+}
+
+/// A script, and what it can read in this step.
+#[derive(Debug)]
+pub(crate) struct Present {
+    pub loaded: Arc<Loaded>,
+    pub facts: Arc<Facts>,
+    /// What `fn calibrate` returned; nothing before it ran.
+    pub calibrated: Option<Arc<Dynamic>>,
+    /// The same as native trees read it.
+    pub slots: Vec<Slot>,
+}
+
+impl Present {
+    pub(crate) fn inputs(&self) -> Inputs<'_> {
+        Inputs { facts: &self.facts, slots: &self.slots }
+    }
+
+    /// What a rule, or after the last one `fn reward`, reads.
+    pub(crate) fn parts(&self, rule: usize) -> &[Part] {
+        self.loaded.rules.get(rule).map_or(&self.loaded.reward_parts, |rule| &rule.parts)
+    }
+
+    pub(crate) fn condition(&self, rule: &Rule) -> Result<bool> {
+        let script = match &rule.condition {
+            Clause::Native(flag) => return Ok(flag.holds(self.inputs())),
+            Clause::Script(script) => script,
+        };
+        let result = self.run(script)?;
+        result.as_bool().map_err(|kind| {
+            let message = "a condition must be true or false";
+            let label = format!("this is {}", explain::plain_kind(kind));
+            let wrong = Diagnostic::new("E-SCRIPT-RULE", message);
+            Box::new(
+                wrong
+                    .at(&self.loaded.source, rule.condition_span.clone(), label)
+                    .help("compare it: laser.nearest < 0.25"),
+            )
+        })
+    }
+
+    pub(crate) fn value(&self, rule: &Rule) -> Result<f64> {
+        let script = match &rule.value {
+            Clause::Native(number) => return Ok(number.value(self.inputs())),
+            Clause::Script(script) => script,
+        };
+        let result = self.run(script)?;
+        number(&result).ok_or_else(|| {
+            let label = format!("this is {}", explain::plain_kind(result.type_name()));
+            let wrong = Diagnostic::new("E-SCRIPT-RULE", "a rule's value must be a number");
+            Box::new(wrong.at(&self.loaded.source, rule.value_span.clone(), label).help("write a number, such as -1"))
+        })
+    }
+
+    fn run(&self, script: &ScriptClause) -> Result<Dynamic> {
+        let loaded = &*self.loaded;
+        let mut scope = Scope::new();
+        for root in &script.roots {
+            match root.as_str() {
+                "facts" => drop(scope.push("facts", self.all())),
+                "calibrated" => drop(scope.push_dynamic("calibrated", self.calibration().as_ref().clone())),
+                group => match view(group, &self.facts) {
+                    unknown if unknown.is_unit() => {}
+                    known => drop(scope.push_dynamic(group, known)),
+                },
+            }
+        }
+        for index in 0..script.variables {
+            if let Some((name, value)) = variable(&loaded.constants, index) {
+                scope.push_dynamic(name, value);
+            }
+        }
+        let result = loaded.engine.eval_ast_with_scope::<Dynamic>(&mut scope, &script.ast);
+        result.map_err(|error| Box::new(running::explain(&loaded.source, &error)))
+    }
+
+    fn calibration(&self) -> Arc<Dynamic> {
+        self.calibrated.as_ref().map_or_else(Arc::default, Arc::clone)
+    }
+
+    fn all(&self) -> All {
+        All::new(&self.facts, &self.calibration())
+    }
+
+    pub(crate) fn call(&self, function: &str) -> Result<Dynamic> {
+        let loaded = &*self.loaded;
+        let options = CallFnOptions::new().eval_ast(false).rewind_scope(true);
+        let arguments = (self.all(),);
+        let result = loaded.engine.call_fn_with_options(options, &mut Scope::new(), &loaded.ast, function, arguments);
+        result.map_err(|error| Box::new(running::explain(&loaded.source, &error)))
+    }
+
+    /// What `fn reward` returns; its value may still be infinite.
+    pub(crate) fn reward(&self, span: &Range<usize>) -> Result<Judgement> {
+        let result = self.call("reward")?;
+        if let Some(reward) = number(&result) {
+            return Ok(Judgement { reward, recover: false });
+        }
+        let wrong = |message: String| {
+            Diagnostic::new("E-REWARD-VALUE", message)
+                .at(&self.loaded.source, span.clone(), "defined here")
+                .help("return a number, or #{ value: -1, recover: true }")
+        };
+        let kind = explain::plain_kind(result.type_name());
+        let Some(map) = result.try_cast::<Map>() else {
+            return wrong(format!("'fn reward' must return a number or a map, found {kind}")).fail();
+        };
+        if let Some(key) = map.keys().find(|key| !matches!(key.as_str(), "value" | "recover")) {
+            let near = nearest_name(key, ["value", "recover"])
+                .map_or(String::new(), |near| format!("; did you mean '{near}'?"));
+            return wrong(format!("the map that 'fn reward' returned has a key '{}'{near}", printable(key))).fail();
+        }
+        let recover = map.get("recover").map_or(Ok(false), Dynamic::as_bool);
+        match (map.get("value").and_then(number), recover) {
+            (Some(reward), Ok(recover)) => Ok(Judgement { reward, recover }),
+            (None, _) => wrong("the map that 'fn reward' returned has no number as its 'value'".to_owned()).fail(),
+            (_, Err(_)) => {
+                wrong("'recover' in the map that 'fn reward' returned must be true or false".to_owned()).fail()
+            }
+        }
+    }
+
+    /// The error for a value that is not finite.
+    pub(crate) fn not_finite(&self, what: &str, value: f64, span: Range<usize>) -> Diagnostic {
+        let value = if value.is_nan() { "no number (NaN)".to_owned() } else { value.to_string() };
+        let message = format!("{what} gave {value} as its value");
+        Diagnostic::new("E-REWARD-VALUE", message)
+            .at(&self.loaded.source, span, format!("gave {value}"))
+            .help("look for a division by 0, or the root or logarithm of a negative number")
+    }
+}

@@ -1,0 +1,220 @@
+//! Conditions and values as small native trees: what a rule costs is what they cost.
+
+use super::facts::{self, Facts};
+
+/// A part of what `fn calibrate` returned, as rules read it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Slot {
+    Number(f64),
+    Numbers(Vec<f64>),
+    Other,
+}
+
+/// What a tree reads.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Inputs<'a> {
+    pub facts: &'a Facts,
+    pub slots: &'a [Slot],
+}
+
+/// An operator between two numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Arithmetic {
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Remainder,
+}
+
+/// A comparison of two numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Comparison {
+    /// `<`
+    Less,
+    /// `<=`
+    LessOrEqual,
+    /// `>`
+    Greater,
+    /// `>=`
+    GreaterOrEqual,
+    /// `==`
+    Equal,
+    /// `!=`
+    Unequal,
+}
+
+/// A tree with a number as its value.
+#[derive(Debug, Clone)]
+pub(crate) enum Number {
+    Constant(f64),
+    Fact(fn(&Facts) -> f64, super::fact_table::Reach),
+    Whole(fn(&Facts) -> i64),
+    Beam(usize),
+    Cell(usize, usize),
+    Sector(usize, usize, fn(&[f32]) -> f64),
+    CountBelow(usize, usize, Box<Number>),
+    Excess(usize, usize, usize),
+    Calibrated(usize),
+    Negate(Box<Number>),
+    Binary(Arithmetic, Box<[Number; 2]>),
+    OfOne(fn(f64) -> f64, Box<Number>),
+    OfTwo(fn(f64, f64) -> f64, Box<[Number; 2]>),
+}
+
+/// A tree that is true or false.
+#[derive(Debug, Clone)]
+pub(crate) enum Flag {
+    Constant(bool),
+    Fact(fn(&Facts) -> bool),
+    Compare(Comparison, Box<[Number; 2]>),
+    Same(Box<[Flag; 2]>),
+    Not(Box<Flag>),
+    And(Vec<Flag>),
+    Or(Vec<Flag>),
+}
+
+/// A native tree with its kind. Whole numbers are told apart because their division and overflow differ.
+#[derive(Debug, Clone)]
+pub(crate) enum Typed {
+    Number(Number),
+    Whole(Number),
+    Flag(Flag),
+}
+
+impl Number {
+    // Most rules compare a fact with a constant: these two are worth a way of their own, without a call.
+    #[inline]
+    pub(crate) fn value(&self, inputs: Inputs<'_>) -> f64 {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Fact(get, _) => get(inputs.facts),
+            tree => tree.branch(inputs),
+        }
+    }
+
+    fn branch(&self, inputs: Inputs<'_>) -> f64 {
+        match self {
+            Self::Constant(_) | Self::Fact(..) => self.value(inputs),
+            Self::Whole(get) => get(inputs.facts) as f64,
+            Self::Beam(beam) => inputs.facts.beam_m(*beam),
+            Self::Cell(row, column) => inputs.facts.cell(*row, *column),
+            Self::Sector(from, to, get) => get(inputs.facts.sector_m(*from, *to)),
+            Self::CountBelow(from, to, limit) => {
+                facts::count_below(inputs.facts.sector_m(*from, *to), limit.value(inputs)) as f64
+            }
+            Self::Excess(from, to, slot) => match inputs.slots.get(*slot) {
+                Some(Slot::Numbers(expected)) => facts::excess(inputs.facts.sector_m(*from, *to), expected),
+                _ => f64::NAN,
+            },
+            Self::Calibrated(slot) => match inputs.slots.get(*slot) {
+                Some(Slot::Number(value)) => *value,
+                _ => f64::NAN,
+            },
+            Self::Negate(of) => -of.value(inputs),
+            Self::Binary(operator, pair) => operator.apply(pair[0].value(inputs), pair[1].value(inputs)),
+            Self::OfOne(function, of) => function(of.value(inputs)),
+            Self::OfTwo(function, pair) => function(pair[0].value(inputs), pair[1].value(inputs)),
+        }
+    }
+}
+
+impl Flag {
+    pub(crate) fn holds(&self, inputs: Inputs<'_>) -> bool {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Fact(get) => get(inputs.facts),
+            Self::Compare(comparison, pair) => comparison.holds(pair[0].value(inputs), pair[1].value(inputs)),
+            Self::Same(pair) => pair[0].holds(inputs) == pair[1].holds(inputs),
+            Self::Not(of) => !of.holds(inputs),
+            Self::And(all) => all.iter().all(|flag| flag.holds(inputs)),
+            Self::Or(any) => any.iter().any(|flag| flag.holds(inputs)),
+        }
+    }
+}
+
+impl Arithmetic {
+    pub(crate) fn of(symbol: &str) -> Option<Self> {
+        Some(match symbol {
+            "+" => Self::Add,
+            "-" => Self::Subtract,
+            "*" => Self::Multiply,
+            "/" => Self::Divide,
+            "%" => Self::Remainder,
+            _ => return None,
+        })
+    }
+
+    pub(crate) fn apply(self, a: f64, b: f64) -> f64 {
+        match self {
+            Self::Add => a + b,
+            Self::Subtract => a - b,
+            Self::Multiply => a * b,
+            Self::Divide => a / b,
+            Self::Remainder => a % b,
+        }
+    }
+}
+
+impl Comparison {
+    pub(crate) fn of(symbol: &str) -> Option<Self> {
+        Some(match symbol {
+            "<" => Self::Less,
+            "<=" => Self::LessOrEqual,
+            ">" => Self::Greater,
+            ">=" => Self::GreaterOrEqual,
+            "==" => Self::Equal,
+            "!=" => Self::Unequal,
+            _ => return None,
+        })
+    }
+
+    /// The same with its sides exchanged.
+    pub(crate) const fn turned(self) -> Self {
+        match self {
+            Self::Less => Self::Greater,
+            Self::LessOrEqual => Self::GreaterOrEqual,
+            Self::Greater => Self::Less,
+            Self::GreaterOrEqual => Self::LessOrEqual,
+            same => same,
+        }
+    }
+
+    /// What holds where this does not.
+    pub(crate) const fn denied(self) -> Self {
+        match self {
+            Self::Less => Self::GreaterOrEqual,
+            Self::LessOrEqual => Self::Greater,
+            Self::Greater => Self::LessOrEqual,
+            Self::GreaterOrEqual => Self::Less,
+            Self::Equal => Self::Unequal,
+            Self::Unequal => Self::Equal,
+        }
+    }
+
+    /// Whether it says which of two numbers is the greater one.
+    pub(crate) const fn orders(self) -> bool {
+        !matches!(self, Self::Equal | Self::Unequal)
+    }
+
+    pub(crate) fn holds(self, a: f64, b: f64) -> bool {
+        match self {
+            Self::Less => a < b,
+            Self::LessOrEqual => a <= b,
+            Self::Greater => a > b,
+            Self::GreaterOrEqual => a >= b,
+            Self::Equal => distance(a, b) <= f64::EPSILON,
+            Self::Unequal => distance(a, b) > f64::EPSILON,
+        }
+    }
+}
+
+/// The interpreter's measure of equality: numbers that differ by rounding only are equal, and NaN is neither.
+fn distance(a: f64, b: f64) -> f64 {
+    let scale = if a * b == 0.0 { 1.0 } else { larger(a.abs(), b.abs()) };
+    if scale == 0.0 { 0.0 } else { (a - b).abs() / scale }
+}
+
+fn larger(a: f64, b: f64) -> f64 {
+    if b > a || a.is_nan() { b } else { a }
+}

@@ -1,0 +1,28 @@
+//! What judges a robot's steps: the facts that were measured, and the rules of a script asked about them.
+//!
+//! The room `script` makes rules of a script, which all seeds share. [`Judge`] is one run's
+//! judging of it: counters, and what was calibrated. Conditions and values are small native trees; what was not understood
+//! is left to the interpreter, inside limits that are counted, never timed.
+
+pub(crate) mod evaluate;
+pub(crate) mod explain;
+pub(crate) mod expression;
+pub(crate) mod fact_table;
+pub(crate) mod facts;
+pub(crate) mod functions;
+mod judging;
+pub(crate) mod loaded;
+pub(crate) mod needs;
+pub(crate) mod reach;
+pub(crate) mod readings;
+pub(crate) mod rule;
+pub(crate) mod running;
+pub(crate) mod sandbox;
+pub(crate) mod views;
+
+pub use evaluate::Judgement;
+pub use expression::Comparison;
+pub use facts::Facts;
+pub use judging::Judge;
+pub use readings::{Evidence, FactRead};
+pub use rule::RuleText;

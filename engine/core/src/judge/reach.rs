@@ -1,0 +1,129 @@
+//! Whether a rule can fire at all: intervals through its condition.
+
+use super::expression::{Arithmetic, Comparison, Flag, Number};
+use super::fact_table::Reach;
+use super::facts::{Facts, decimal};
+use super::rule::{Clause, Rule};
+use crate::diagnostic::{Diagnostic, Result, SourceText};
+use crate::settings::LaserSettings;
+
+type Interval = (f64, f64);
+
+const ANYWHERE: Interval = (f64::NEG_INFINITY, f64::INFINITY);
+
+/// The least and the greatest that the laser can measure, beam by beam.
+///
+/// Every fact of the laser grows with its ranges, so these two scans bound them all.
+pub(crate) struct Limits {
+    low: Facts,
+    high: Facts,
+    laser: LaserSettings,
+}
+
+impl Limits {
+    /// For a laser whose floor is at most `drop_m` below the robot's own ground; infinite where that is not known.
+    ///
+    /// A beam at the angle `a` from the front falls by `sin(tilt) cos(a)` for each metre, so it meets the floor at the
+    /// latest after `(height + drop) / (sin(tilt) cos(a))`. Noise may add six deviations to that.
+    pub(crate) fn new(laser: &LaserSettings, drop_m: f64) -> Self {
+        let beams = (laser.beams as usize).max(2);
+        let fall = libm::sin(laser.tilt_deg.to_radians());
+        let longest = |beam: usize| {
+            let angle = std::f64::consts::PI * (beam as f64 / (beams - 1) as f64 - 0.5);
+            // The outermost beams are level; rounding must not make them fall.
+            let fall = fall * libm::cos(angle) - 1e-9;
+            let floor_m = if fall > 0.0 { (laser.height_m + drop_m) / fall } else { f64::INFINITY };
+            (floor_m + 6.0 * laser.noise_m).clamp(laser.min_range_m, laser.max_range_m.max(laser.min_range_m)) as f32
+        };
+        let facts = |ranges_m: Vec<f32>| Facts { ranges_m, ..Facts::default() };
+        let low = facts(vec![laser.min_range_m as f32; beams]);
+        Self { low, high: facts((0..beams).map(longest).collect()), laser: laser.clone() }
+    }
+
+    fn of_beams(&self, from: usize, to: usize, of: impl Fn(&[f32]) -> f64) -> Interval {
+        let bound = |facts: &Facts| facts.ranges_m.get(from..=to).map(&of);
+        match (bound(&self.low), bound(&self.high)) {
+            (Some(low), Some(high)) => (low, high),
+            _ => (self.laser.min_range_m, self.laser.max_range_m),
+        }
+    }
+}
+
+/// Checks that a rule's condition can hold within the limits.
+///
+/// # Errors
+/// If it never can, with the values that it would have to take.
+pub(crate) fn check_rule(source: &SourceText, rule: &Rule, limits: &Limits) -> Result<()> {
+    let Clause::Native(condition) = &rule.condition else { return Ok(()) };
+    let Some(why) = impossible(condition, limits) else { return Ok(()) };
+    let help = match limits.laser.tilt_deg > 0.0 {
+        true => {
+            "the laser looks down and meets the floor: check laser.tilt_deg and laser.height_m; ranges are in metres"
+        }
+        false => "ranges are in metres, shares from 0 to 1, angles in radians",
+    };
+    Diagnostic::new("E-SCRIPT-RULE", format!("{} can never fire", rule.shown()))
+        .at(source, rule.condition_span.clone(), why)
+        .help(help)
+        .fail()
+}
+
+/// Why a condition never holds; nothing if it can.
+fn impossible(flag: &Flag, limits: &Limits) -> Option<String> {
+    match flag {
+        Flag::Constant(false) => Some("this is always false".to_owned()),
+        Flag::And(all) => all.iter().find_map(|part| impossible(part, limits)),
+        Flag::Or(any) => {
+            any.iter().map(|part| impossible(part, limits)).collect::<Option<Vec<_>>>()?.into_iter().next()
+        }
+        Flag::Compare(comparison, pair) => {
+            let (a, b) = (interval(&pair[0], limits), interval(&pair[1], limits));
+            let possible = match comparison {
+                Comparison::Less => a.0 < b.1,
+                Comparison::LessOrEqual => a.0 <= b.1,
+                Comparison::Greater => a.1 > b.0,
+                Comparison::GreaterOrEqual => a.1 >= b.0,
+                Comparison::Equal => a.0 <= b.1 && b.0 <= a.1,
+                Comparison::Unequal => true,
+            };
+            let fact = if matches!(pair[0], Number::Constant(_)) { b } else { a };
+            (!possible).then(|| format!("this is {}", words(fact)))
+        }
+        _ => None,
+    }
+}
+
+fn words((low, high): Interval) -> String {
+    match (low.is_finite(), high.is_finite()) {
+        (true, true) if low == high => format!("always {low}"),
+        (true, true) => format!("always between {low} and {high}"),
+        (true, false) => format!("never less than {low}"),
+        _ => format!("never more than {high}"),
+    }
+}
+
+/// Between which values a number lies; wider where nothing better is known.
+fn interval(number: &Number, limits: &Limits) -> Interval {
+    match number {
+        Number::Constant(value) => (*value, *value),
+        Number::Fact(of, Reach::Laser) => (of(&limits.low), of(&limits.high)),
+        Number::Fact(_, reach) => reach.bounds(),
+        Number::Whole(_) | Number::CountBelow(..) => (0.0, f64::INFINITY),
+        Number::Beam(beam) => limits.of_beams(*beam, *beam, |ranges_m| decimal(ranges_m[0])),
+        Number::Sector(from, to, of) => limits.of_beams(*from, *to, of),
+        Number::Cell(..) => (0.0, 1.0),
+        Number::Negate(of) => {
+            let (low, high) = interval(of, limits);
+            (-high, -low)
+        }
+        Number::Binary(Arithmetic::Add, pair) => {
+            let (a, b) = (interval(&pair[0], limits), interval(&pair[1], limits));
+            (a.0 + b.0, a.1 + b.1)
+        }
+        Number::Binary(Arithmetic::Subtract, pair) => {
+            let (a, b) = (interval(&pair[0], limits), interval(&pair[1], limits));
+            (a.0 - b.1, a.1 - b.0)
+        }
+        _ => ANYWHERE,
+    }
+}

@@ -1,0 +1,194 @@
+//! How a script sees the facts: `facts`, its groups and sectors, each a handle on the measurements of one step.
+
+use super::fact_table::{FACTS, Getter, SECTOR};
+use super::facts::{self, Facts};
+use rhai::{Dynamic, Engine, EvalAltResult, Position, Variant};
+use std::sync::Arc;
+
+type Checked<T> = Result<T, Box<EvalAltResult>>;
+
+/// A group of facts as a script's variable.
+pub(crate) trait View: Variant + Clone {
+    /// The group's name.
+    const GROUP: &'static str;
+    /// The handle on these measurements.
+    fn new(facts: Arc<Facts>) -> Self;
+    /// The measurements.
+    fn facts(&self) -> &Facts;
+}
+
+macro_rules! views {
+    ($($(#[$doc:meta])* $name:ident $group:literal,)*) => {
+        $($(#[$doc])* #[derive(Clone)]
+        pub(crate) struct $name(Arc<Facts>);
+
+        impl View for $name {
+            const GROUP: &'static str = $group;
+            fn new(facts: Arc<Facts>) -> Self {
+                Self(facts)
+            }
+            fn facts(&self) -> &Facts {
+                &self.0
+            }
+        })*
+
+        /// Makes every group known to an engine.
+        fn register_groups(engine: &mut Engine) {
+            engine.register_type_with_name::<All>("facts");
+            engine.register_get("calibrated", |all: &mut All| Dynamic::clone(&all.calibrated));
+            $(register_group::<$name>(engine);)*
+        }
+
+        /// The group of this name over these measurements, as a script's value.
+        pub(crate) fn view(group: &str, facts: &Arc<Facts>) -> Dynamic {
+            match group {
+                $($group => Dynamic::from($name::new(Arc::clone(facts))),)*
+                _ => Dynamic::UNIT,
+            }
+        }
+    };
+}
+
+views! {
+    /// `laser`
+    Laser "laser",
+    /// `camera`
+    Camera "camera",
+    /// `action`
+    Action "action",
+    /// `robot`
+    Robot "robot",
+    /// `state`
+    State "state",
+    /// `time`
+    Time "time",
+}
+
+/// `facts`: all groups, and what `fn calibrate` returned.
+#[derive(Clone)]
+pub(crate) struct All {
+    facts: Arc<Facts>,
+    calibrated: Arc<Dynamic>,
+}
+
+impl All {
+    /// The handle on these measurements.
+    pub(crate) fn new(facts: &Arc<Facts>, calibrated: &Arc<Dynamic>) -> Self {
+        Self { facts: Arc::clone(facts), calibrated: Arc::clone(calibrated) }
+    }
+}
+
+/// `laser.sector(from, to)`.
+#[derive(Clone)]
+struct Sector {
+    facts: Arc<Facts>,
+    from: usize,
+    to: usize,
+}
+
+impl Sector {
+    fn ranges(&self) -> &[f32] {
+        self.facts.sector_m(self.from, self.to)
+    }
+    fn nearest(&self) -> f64 {
+        facts::decimal(facts::least(self.ranges()))
+    }
+}
+
+/// Makes every fact known to an engine.
+pub(crate) fn register(engine: &mut Engine) {
+    register_groups(engine);
+    register_laser(engine);
+    register_sector(engine);
+    engine.register_fn("cell", |camera: &mut Camera, row: i64, column: i64| -> Checked<f64> {
+        let (rows, columns) = camera.0.grid;
+        let row = index(row, rows, "row numbers")?;
+        Ok(camera.0.cell(row, index(column, columns, "column numbers")?))
+    });
+}
+
+fn register_group<T: View>(engine: &mut Engine) {
+    engine.register_type_with_name::<T>(T::GROUP);
+    engine.register_get(T::GROUP, |all: &mut All| T::new(Arc::clone(&all.facts)));
+    for fact in FACTS.iter().filter(|fact| fact.group == T::GROUP) {
+        match fact.get {
+            Getter::Number(get) => engine.register_get(fact.key, move |view: &mut T| get(view.facts())),
+            Getter::Whole(get) => engine.register_get(fact.key, move |view: &mut T| get(view.facts())),
+            Getter::Flag(get) => engine.register_get(fact.key, move |view: &mut T| get(view.facts())),
+        };
+    }
+}
+
+fn register_laser(engine: &mut Engine) {
+    engine.register_indexer_get(|laser: &mut Laser, beam: i64| -> Checked<f64> {
+        let beam = index(beam, laser.0.ranges_m.len(), "beam numbers")?;
+        Ok(laser.0.beam_m(beam))
+    });
+    engine.register_fn("sector", |laser: &mut Laser, from: i64, to: i64| -> Checked<Sector> {
+        let count = laser.0.ranges_m.len();
+        let (from, to) = (index(from, count, "beam numbers")?, index(to, count, "beam numbers")?);
+        if from > to {
+            return Err(fault(format!("a sector runs from the lower beam to the higher one, found {from} to {to}")));
+        }
+        Ok(Sector { facts: Arc::clone(&laser.0), from, to })
+    });
+    compare(engine, |laser: &Laser| facts::decimal(facts::least(&laser.0.ranges_m)));
+}
+
+fn register_sector(engine: &mut Engine) {
+    engine.register_type_with_name::<Sector>("sector");
+    for fact in SECTOR {
+        let get = fact.get;
+        engine.register_get(fact.key, move |sector: &mut Sector| get(sector.ranges()));
+    }
+    engine.register_fn("count_below", |sector: &mut Sector, limit_m: f64| below(sector, limit_m));
+    engine.register_fn("count_below", |sector: &mut Sector, limit_m: i64| below(sector, limit_m as f64));
+    engine.register_fn("excess", |sector: &mut Sector, expected: rhai::Array| -> Checked<f64> {
+        let ranges = sector.ranges();
+        let expected: Option<Vec<f64>> = expected.iter().map(number).collect();
+        match expected {
+            Some(expected) if expected.len() == ranges.len() => Ok(facts::excess(ranges, &expected)),
+            Some(expected) => Err(fault(wrong_length(ranges.len(), expected.len()))),
+            None => Err(fault("'excess' needs an array of numbers".to_owned())),
+        }
+    });
+    compare(engine, Sector::nearest);
+}
+
+/// The message for an array of expected ranges that does not fit its sector.
+pub(crate) fn wrong_length(beams: usize, found: usize) -> String {
+    format!("'excess' needs one expected range for each of the {beams} beams of its sector, found {found}")
+}
+
+fn below(sector: &Sector, limit_m: f64) -> i64 {
+    facts::count_below(sector.ranges(), limit_m) as i64
+}
+
+/// A number of a script, whole or not.
+pub(crate) fn number(value: &Dynamic) -> Option<f64> {
+    value.as_float().ok().or_else(|| value.as_int().ok().map(|whole| whole as f64))
+}
+
+fn index(wanted: i64, count: usize, what: &str) -> Checked<usize> {
+    usize::try_from(wanted)
+        .ok()
+        .filter(|&index| index < count)
+        .ok_or_else(|| fault(format!("{what} run from 0 to {}, found {wanted}", count.saturating_sub(1))))
+}
+
+fn fault(message: String) -> Box<EvalAltResult> {
+    Box::new(EvalAltResult::ErrorRuntime(message.into(), Position::NONE))
+}
+
+/// Comparison with a number, on either side, for something that stands for one range.
+fn compare<T: Variant + Clone>(engine: &mut Engine, range_m: fn(&T) -> f64) {
+    type Holds = fn(f64, f64) -> bool;
+    let operators: [(&str, Holds); 4] =
+        [("<", |a, b| a < b), ("<=", |a, b| a <= b), (">", |a, b| a > b), (">=", |a, b| a >= b)];
+    for (operator, holds) in operators {
+        engine.register_fn(operator, move |a: T, b: f64| holds(range_m(&a), b));
+        engine.register_fn(operator, move |a: T, b: i64| holds(range_m(&a), b as f64));
+        engine.register_fn(operator, move |a: f64, b: T| holds(a, range_m(&b)));
+        engine.register_fn(operator, move |a: i64, b: T| holds(a as f64, range_m(&b)));
+    }
+}

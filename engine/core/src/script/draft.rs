@@ -1,0 +1,176 @@
+//! A script as far as it can be understood, with all that is wrong in it.
+
+use super::behaviour::Behaviour;
+use super::bodies::outline_of;
+use super::compile::Compiler;
+use super::outline::Outline;
+use super::rules::rules;
+use super::setup::{self, Log, SetUp};
+use super::source::{self, Code};
+use super::spoilt::Spoilt;
+use super::tree::tree;
+use super::unread::Unread;
+use super::{names, parts, rehearsal, syntax, top_level};
+use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, printable};
+use crate::judge::loaded::Loaded;
+use crate::judge::needs::Needs;
+use crate::judge::sandbox;
+use crate::settings::Settings;
+use rhai::{AST, Module, Scope};
+use std::ops::Range;
+use std::path::Path;
+
+/// A script as far as it is understood. What a mistake keeps from being understood is not in it.
+#[derive(Debug)]
+pub struct Draft {
+    /// What is understood; to be learned only if there is no mistake.
+    pub behaviour: Behaviour,
+    /// All that is wrong.
+    pub mistakes: Mistakes,
+    /// Settings that are not what the script's author wrote.
+    pub unread: Unread,
+}
+
+impl Draft {
+    /// Loads a script and looks for mistakes in it.
+    ///
+    /// # Errors
+    /// If nothing can be understood after a mistake: the file cannot be read as a script, or a limit stopped it.
+    pub fn load(path: &Path) -> Result<Self> {
+        let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+        Self::read(&name, source::read(path)?)
+    }
+
+    /// Looks for mistakes in a script's text; `name` is the behaviour's.
+    ///
+    /// # Errors
+    /// As [`Draft::load`].
+    pub fn read(name: &str, source: SourceText) -> Result<Self> {
+        let code = source::check_text(source)?;
+        let mut mistakes = Mistakes::new(&code.source);
+        match Self::understood(name, &code, &mut mistakes) {
+            Ok((behaviour, unread)) => Ok(Self { behaviour, mistakes, unread }),
+            Err(last) => Err(mistakes.ended_by(last)),
+        }
+    }
+
+    /// The behaviour.
+    ///
+    /// # Errors
+    /// If there is a mistake.
+    pub fn end(self) -> Result<Behaviour> {
+        self.mistakes.end().map(|()| self.behaviour)
+    }
+
+    fn understood(
+        name: &str,
+        code: &Code,
+        mistakes: &mut Mistakes,
+    ) -> std::result::Result<(Behaviour, Unread), Diagnostic> {
+        let mut engine = sandbox::engine();
+        syntax::register(&mut engine);
+        let log = Log::register(&mut engine);
+        let tree = tree(&mut engine, code, mistakes)?;
+        let mut needs = Needs::default();
+        let mut spoilt = Spoilt::new(code, &tree);
+        spoilt.spread(mistakes);
+        let before = mistakes.count();
+        let undefined = names::check_names(code, &tree, &spoilt, &mut needs, mistakes);
+        undefined.into_iter().for_each(|name| spoilt.insert(name));
+        if let Some(refused) = &tree.refused
+            && mistakes.count() == before
+        {
+            return Err(Diagnostic::clone(refused));
+        }
+        let constants = top_level::run(&engine, code, &tree, &log, &mut spoilt, mistakes)?;
+        spoilt.spread(mistakes);
+        let calls = spoilt.setup_calls(mistakes);
+        let SetUp { settings, places, mut unread } = setup::finish(&log, code, &tree.ast, mistakes);
+        calls.into_iter().for_each(|call| unread.all_of(call));
+        engine.register_global_module(constants_module(&constants).into());
+        let rules = rules(code, &tree.ast, &constants, &mut needs, &spoilt, mistakes);
+        let function = |name| if has_function(&tree.ast, name) { code.function(name) } else { None };
+        let (reward, calibrate) = (function("reward"), function("calibrate"));
+        if rules.is_empty() && reward.is_none() && mistakes.is_empty() {
+            return Err(empty(code));
+        }
+        let parts = |span: &Range<usize>, needs: &mut Needs| {
+            parts::function_parts(code, &tree.ast, span, &mut Compiler { constants: &constants, needs })
+        };
+        let reward_parts = reward.as_ref().map_or_else(Vec::new, |span| parts(span, &mut needs));
+        let outline = match mistakes.is_empty() {
+            true => outline_of(code, &tree.ast, &constants, &rules),
+            false => Outline::default(),
+        };
+        let (source, ast) = (code.source.clone(), tree.ast);
+        let loaded = Loaded { source, engine, ast, constants, rules, needs, reward, reward_parts, calibrate };
+        let behaviour = Behaviour::new(name, settings, places, outline, loaded);
+        check_with_settings(&behaviour, &mut spoilt, &unread, mistakes)?;
+        Ok((behaviour, unread))
+    }
+}
+
+impl Behaviour {
+    /// Loads a script and checks it.
+    ///
+    /// # Errors
+    /// If the file cannot be read as a script, or anything in it is wrong: each mistake in the user's own line, with what
+    /// to write.
+    pub fn load(path: &Path) -> Result<Self> {
+        Draft::load(path)?.end()
+    }
+
+    /// Loads a script from its text; `name` is the behaviour's.
+    ///
+    /// # Errors
+    /// If anything in it is wrong.
+    pub fn parse(name: &str, source: SourceText) -> Result<Self> {
+        Draft::read(name, source)?.end()
+    }
+}
+
+/// Beams, cells, rules that never fire, and a rehearsal: as far as the settings that these depend on are known.
+fn check_with_settings(
+    behaviour: &Behaviour,
+    spoilt: &mut Spoilt<'_>,
+    unread: &Unread,
+    mistakes: &mut Mistakes,
+) -> std::result::Result<(), Diagnostic> {
+    let (Settings { run, laser, grid, .. }, loaded) = (behaviour.settings(), behaviour.loaded());
+    let beams = laser.beams as usize;
+    if !unread.has("laser", "beams") {
+        mistakes.take(loaded.check_beams(beams));
+    }
+    if !unread.has("grid", "rows") && !unread.has("grid", "columns") {
+        mistakes.take(loaded.check_cells((grid.rows as usize, grid.columns as usize)));
+    }
+    if !unread.any_of("laser") {
+        behaviour.find_unreachable(laser, f64::INFINITY, mistakes);
+    }
+    // Rules that name beams of another laser cannot be tried.
+    if unread.has("laser", "beams") && loaded.check_beams(beams).is_err() {
+        return Ok(());
+    }
+    spoilt.spread(mistakes);
+    let judge = behaviour.unchecked_judge(run.period_s, beams);
+    rehearsal::rehearse(judge, behaviour.settings(), spoilt, mistakes).map_err(|last| *last)
+}
+
+fn constants_module(constants: &Scope<'_>) -> Module {
+    let mut module = Module::new();
+    for (name, _, value) in constants.iter() {
+        module.set_var(name, value);
+    }
+    module
+}
+
+fn has_function(ast: &AST, name: &str) -> bool {
+    ast.iter_functions().any(|function| function.name == name)
+}
+
+fn empty(code: &Code) -> Diagnostic {
+    let path = printable(&code.source.path.display().to_string());
+    let message = format!("'{path}' has neither a rule nor 'fn reward': nothing could be learned");
+    Diagnostic::new("E-SCRIPT-EMPTY", message)
+        .help("write a rule: rule \"too close\" when laser.nearest < 0.25 => -1 then recover;")
+}

@@ -1,0 +1,38 @@
+//! The language of scripts: from a script's text to what can be judged, with all that is wrong in it.
+//!
+//! A script sets up, names rules over facts, and may have functions. [`Behaviour`] is a script that has been loaded and
+//! checked; [`Draft`] is one as far as it can be understood, with its mistakes, and the order of the stages. What is
+//! judged in every step, and how, is the room `judge`.
+
+mod behaviour;
+mod bodies;
+mod chain;
+mod compile;
+mod draft;
+mod names;
+mod outline;
+mod parts;
+mod positions;
+mod reader;
+mod reference;
+mod refused;
+mod rehearsal;
+mod rules;
+mod setup;
+mod setup_table;
+mod source;
+mod spoilt;
+mod syntax;
+mod top_level;
+mod tree;
+mod unknown;
+mod unread;
+
+pub use behaviour::Behaviour;
+pub use draft::Draft;
+pub use outline::{BeamLoop, Compared, Condition, Gathers, Outline, RuleOutline, UnusedName};
+pub use reference::{definitions, reference};
+pub use unread::Unread;
+
+#[cfg(test)]
+mod tests;

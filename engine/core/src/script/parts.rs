@@ -1,0 +1,118 @@
+//! What a condition reads, found part by part in the script's tree.
+
+use super::chain::{Chain, Link};
+use super::compile::Compiler;
+use super::positions::{body_end, chain_end, first, part_end};
+use super::source::Code;
+use crate::judge::explain::offset;
+use crate::judge::expression::Typed;
+use crate::judge::fact_table::{self, FACTS, Fact};
+use crate::judge::readings::{ALL, Look, Part, Reading, look_of_fact};
+use rhai::{AST, ASTNode, Expr};
+use std::ops::Range;
+
+/// The parts of a condition.
+pub(super) fn parts(code: &Code, condition: &Expr, compiler: &mut Compiler<'_>) -> Vec<Part> {
+    let uses = compiler.needs.slot_uses.len();
+    let mut parts = Vec::new();
+    add(code, condition, compiler, &mut parts);
+    compiler.needs.slot_uses.truncate(uses);
+    parts
+}
+
+/// `fn reward` as one part: what its body reads. The order of the tree is not that of the text, so it is sorted.
+pub(super) fn function_parts(code: &Code, ast: &AST, name: &Range<usize>, compiler: &mut Compiler<'_>) -> Vec<Part> {
+    let body = name.start..body_end(&code.plain, name.start);
+    let uses = compiler.needs.slot_uses.len();
+    let mut found = Vec::new();
+    ast.clone_functions_only().walk(&mut |path: &[ASTNode<'_>]| {
+        if let Some(ASTNode::Expr(expr)) = path.last() {
+            collect(code, expr, compiler, &mut found);
+        }
+        true
+    });
+    compiler.needs.slot_uses.truncate(uses);
+    found.retain(|(start, _)| body.contains(start));
+    found.sort_by_key(|(start, _)| *start);
+    let mut readings: Vec<Reading> = Vec::new();
+    for (_, reading) in found {
+        if !readings.iter().any(|known| known.name == reading.name) {
+            readings.push(reading);
+        }
+    }
+    // Under another name than 'facts' only whole names are found.
+    let text = &code.plain[body];
+    let is_named = |fact: &&Fact| {
+        let after = |at: usize| text[at..].chars().next().is_none_or(|c| !c.is_alphanumeric() && c != '_');
+        text.match_indices(&fact.name()).any(|(at, found)| after(at + found.len()))
+    };
+    for fact in FACTS.iter().filter(is_named) {
+        if !readings.iter().any(|known| known.name == fact.name()) {
+            readings.push(Reading::of_fact(fact));
+        }
+    }
+    vec![Part { span: name.clone(), flag: None, readings }]
+}
+
+fn add(code: &Code, expr: &Expr, compiler: &mut Compiler<'_>, parts: &mut Vec<Part>) {
+    if let Expr::And(all, _) | Expr::Or(all, _) = expr {
+        return all.iter().for_each(|part| add(code, part, compiler, parts));
+    }
+    let start = offset(&code.source, first(expr));
+    let flag = match compiler.expression(expr) {
+        Some(Typed::Flag(flag)) => Some(flag),
+        _ => None,
+    };
+    parts.push(Part { span: start..part_end(code, start), flag, readings: readings(code, expr, compiler) });
+}
+
+fn readings(code: &Code, expr: &Expr, compiler: &mut Compiler<'_>) -> Vec<Reading> {
+    let mut found = Vec::new();
+    expr.walk(&mut Vec::new(), &mut |path: &[ASTNode<'_>]| {
+        if let Some(ASTNode::Expr(expr)) = path.last() {
+            collect(code, expr, compiler, &mut found);
+        }
+        true
+    });
+    found.into_iter().map(|(_, reading)| reading).collect()
+}
+
+/// Adds what an expression reads, with where it begins, if it is one fact.
+fn collect(code: &Code, expr: &Expr, compiler: &mut Compiler<'_>, found: &mut Vec<(usize, Reading)>) {
+    let Some(chain) = Chain::of(expr) else { return };
+    let start = offset(&code.source, chain.position);
+    // The outermost of a chain comes first; its parts begin where it begins.
+    if found.iter().any(|(known, _)| *known == start) {
+        return;
+    }
+    let typed = compiler.range(expr).map(Typed::Number).or_else(|| compiler.expression(expr));
+    if let (Some(typed), Some((unit, look))) = (typed, describe(&chain, compiler)) {
+        let name = code.source.text[start..chain_end(code, start)].trim_start_matches("facts.").to_owned();
+        found.push((start, Reading { name, typed, unit, look }));
+    }
+}
+
+/// The unit of a fact, and which beam to name with it.
+fn describe(chain: &Chain<'_>, compiler: &mut Compiler<'_>) -> Option<(&'static str, Look)> {
+    match chain.group()? {
+        ("calibrated", _) => Some(("number", Look::Nowhere)),
+        ("laser", []) => Some(("metres", Look::Least(ALL.0, ALL.1))),
+        ("laser", [Link::Index(beam)]) => Some(("metres", Look::One(compiler.beam(beam)?))),
+        ("laser", [Link::Call(call, _), rest @ ..]) => {
+            let (from, to) = compiler.sector(call)?;
+            Some(match rest {
+                [] | [Link::Property("nearest", _)] => ("metres", Look::Least(from, to)),
+                [Link::Property("farthest", _)] => ("metres", Look::Greatest(from, to)),
+                [Link::Call(call, _)] if call.name == "count_below" => ("beams", Look::Least(from, to)),
+                [Link::Call(call, _)] if call.name == "excess" => match compiler.expected(from, to, call) {
+                    Some(slot) => ("metres", Look::Worst(from, to, slot)),
+                    None => ("metres", Look::Nowhere),
+                },
+                _ => ("metres", Look::Nowhere),
+            })
+        }
+        ("camera", [Link::Call(..)]) => Some(("share", Look::Nowhere)),
+        (group, [Link::Property(key, _)]) => fact_table::find(group, key).map(|fact| (fact.unit, look_of_fact(fact))),
+        _ => None,
+    }
+}

@@ -1,0 +1,145 @@
+//! Expressions of a script read for its outline: conditions, comparisons, numbers, facts.
+
+use super::chain::{Chain, Link};
+use super::outline::{Compared, Condition, RuleOutline};
+use super::positions::{first, line_end};
+use super::source::Code;
+use super::syntax::WrittenRule;
+use crate::judge::explain::offset;
+use crate::judge::expression::{Arithmetic, Comparison};
+use crate::judge::fact_table::GROUPS;
+use crate::judge::rule::Rule;
+use rhai::{Expr, Position, Scope};
+
+/// Reads expressions of one script.
+pub(super) struct Reader<'a> {
+    pub code: &'a Code,
+    pub constants: &'a Scope<'static>,
+}
+
+impl Reader<'_> {
+    /// The outline of one rule.
+    pub(super) fn rule(&self, rule: &Rule, written: &WrittenRule<'_>) -> RuleOutline {
+        RuleOutline {
+            condition: self.condition(written.condition),
+            condition_span: rule.condition_span.clone(),
+            value_span: rule.value_span.clone(),
+            time_span: written.time.map(|(time, _)| {
+                let start = self.at(first(time));
+                let tail = &self.code.plain[start..];
+                start..start + tail[..tail.find("=>").unwrap_or(0)].trim_end().len()
+            }),
+            recover: rule.recover,
+        }
+    }
+
+    pub(super) fn at(&self, position: Position) -> usize {
+        offset(&self.code.source, position)
+    }
+
+    fn condition(&self, expr: &Expr) -> Condition {
+        let parts = |parts: &[Expr]| parts.iter().map(|part| self.condition(part)).collect();
+        match expr {
+            Expr::And(all, _) => Condition::All(parts(all)),
+            Expr::Or(any, _) => Condition::Any(parts(any)),
+            Expr::FnCall(call, _) if call.name == "!" && call.args.len() == 1 => match self.condition(&call.args[0]) {
+                Condition::Flag(fact, denied) => Condition::Flag(fact, !denied),
+                Condition::Compare(compared) => {
+                    Condition::Compare(Compared { comparison: compared.comparison.denied(), ..compared })
+                }
+                _ => Condition::Other,
+            },
+            Expr::FnCall(..) => self.compared(expr, &|_| None).map_or(Condition::Other, Condition::Compare),
+            _ => self.fact(expr).map_or(Condition::Other, |fact| Condition::Flag(fact, false)),
+        }
+    }
+
+    /// A comparison of a fact with a fixed number; `local` knows what local variables stand for.
+    pub(super) fn compared(&self, expr: &Expr, local: &dyn Fn(&str) -> Option<Local>) -> Option<Compared> {
+        let Expr::FnCall(call, _) = expr else { return None };
+        let (comparison, [a, b]) = (Comparison::of(&call.name)?, call.args.as_slice()) else { return None };
+        let (side, comparison, limit) = match (self.number(a, local), self.number(b, local)) {
+            (None, Some(limit)) => (a, comparison, limit),
+            (Some(limit), None) => (b, comparison.turned(), limit),
+            _ => return None,
+        };
+        let (fact, absolute) = match side {
+            Expr::FnCall(call, _) if call.name == "abs" && call.args.len() == 1 => (&call.args[0], true),
+            fact => (fact, false),
+        };
+        let named = |name: &str| match local(name) {
+            Some(Local::Fact(fact)) => Some(fact),
+            _ => None,
+        };
+        let fact =
+            self.fact(fact).or_else(|| Chain::of(fact).filter(|c| c.links.is_empty()).and_then(|c| named(c.root)))?;
+        let start = self.at(first(expr));
+        Some(Compared { fact, absolute, comparison, limit, span: start..line_end(self.code, start) })
+    }
+
+    /// A number that does not depend on the step.
+    pub(super) fn number(&self, expr: &Expr, local: &dyn Fn(&str) -> Option<Local>) -> Option<f64> {
+        match expr {
+            Expr::FloatConstant(value, _) => Some(**value),
+            Expr::IntegerConstant(value, _) => Some(*value as f64),
+            Expr::FnCall(call, _) => match (call.name.as_str(), call.args.as_slice()) {
+                ("-", [of]) => self.number(of, local).map(|value| -value),
+                (name, [a, b]) => {
+                    let operator = Arithmetic::of(name)?;
+                    Some(operator.apply(self.number(a, local)?, self.number(b, local)?))
+                }
+                _ => None,
+            },
+            Expr::Variable(..) => {
+                let chain = Chain::of(expr).filter(|chain| chain.links.is_empty())?;
+                if let Some(Local::Number(value)) = local(chain.root) {
+                    return Some(value);
+                }
+                let value = self.constants.get(chain.root)?;
+                value.as_float().ok().or_else(|| value.as_int().ok().map(|value| value as f64))
+            }
+            _ => None,
+        }
+    }
+
+    /// The path of a fact.
+    pub(super) fn fact(&self, expr: &Expr) -> Option<String> {
+        let chain = Chain::of(expr)?;
+        let is_group = |name: &str| GROUPS.iter().any(|(group, _)| *group == name);
+        let (group, links) = match chain.links.split_first() {
+            _ if is_group(chain.root) => (chain.root, chain.links.as_slice()),
+            Some((Link::Property(group, _), rest)) if is_group(group) => (*group, rest),
+            _ => return None,
+        };
+        let mut path = group.to_owned();
+        // The laser, or a sector of it, compared with a number means its nearest.
+        let nearest = match links {
+            [] => group == "laser",
+            [Link::Call(call, _)] => call.name == "sector",
+            _ => false,
+        };
+        let plain = |expr: &Expr| self.number(expr, &|_| None);
+        for link in links {
+            match link {
+                Link::Property(key, _) => path.push_str(&format!(".{key}")),
+                Link::Index(beam) => path.push_str(&format!("[{}]", plain(beam)?)),
+                Link::Call(call, _) => {
+                    let arguments: Option<Vec<String>> =
+                        call.args.iter().map(|argument| plain(argument).map(|value| value.to_string())).collect();
+                    path.push_str(&format!(".{}({})", call.name, arguments.unwrap_or_default().join(",")));
+                }
+            }
+        }
+        if nearest {
+            path.push_str(".nearest");
+        }
+        Some(path)
+    }
+}
+
+/// What a local variable of a function stands for.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Local {
+    Number(f64),
+    Fact(String),
+}

@@ -1,0 +1,146 @@
+//! The page about the script language, and what editors need, from the lists that the engine itself uses.
+
+use super::setup_table::SETUP;
+use super::source;
+use crate::judge::fact_table::{CALLS, FACTS, GROUPS, Reach, SECTOR};
+use crate::judge::functions::FUNCTIONS;
+use crate::judge::sandbox;
+use crate::settings::{SETTINGS, Settings};
+use std::fmt::Write;
+
+/// The page about the script language: `scripts/README.md`.
+#[must_use]
+pub fn reference() -> String {
+    include_str!("reference.md")
+        .replace("{{SETUP}}", &setup())
+        .replace("{{SETTINGS}}", &settings())
+        .replace("{{FACTS}}", &facts())
+        .replace("{{FUNCTIONS}}", &functions())
+        .replace("{{LIMITS}}", &limits())
+}
+
+fn table(heads: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
+    let mut out = format!("| {} |\n|{}", heads.join(" | "), "---|".repeat(heads.len()));
+    for row in rows {
+        let _ = write!(out, "\n| {} |", row.join(" | "));
+    }
+    out
+}
+
+fn setup() -> String {
+    table(&["call", "what it sets"], SETUP.iter().map(|row| vec![format!("`{}`", row.form), row.purpose.to_owned()]))
+}
+
+fn settings() -> String {
+    let defaults = Settings::default();
+    let row = |row: &crate::settings::Setting| {
+        let default = format!("`{}`", (row.get)(&defaults));
+        vec![format!("`{}`", row.key), row.allowed(), default, row.purpose.to_owned()]
+    };
+    let mut groups: Vec<&str> = SETTINGS.iter().map(|row| row.group).collect();
+    groups.dedup();
+    let tables = groups.iter().map(|group| {
+        let rows = SETTINGS.iter().filter(|row| row.group == *group).map(row);
+        format!("### `{group}`\n\n{}", table(&["setting", "may be", "default", "what it changes"], rows))
+    });
+    tables.collect::<Vec<_>>().join("\n\n")
+}
+
+fn facts() -> String {
+    let groups = GROUPS.iter().map(|(group, about)| {
+        let values = FACTS.iter().filter(|fact| fact.group == *group).map(|fact| {
+            let unit = if fact.unit.is_empty() { fact.kind() } else { fact.unit };
+            vec![format!("`{}`", fact.name()), unit.to_owned(), reach(fact.reach), fact.purpose.to_owned()]
+        });
+        let in_group = move |of: &str| of == *group || *group == "laser" && of == "sector";
+        let calls = CALLS
+            .iter()
+            .filter(move |call| in_group(call.group))
+            .map(|call| vec![format!("`{}`", call.form), call.unit.to_owned(), String::new(), call.purpose.to_owned()]);
+        let sector = SECTOR.iter().filter(move |_| in_group("sector")).map(|fact| {
+            let form = format!("`laser.sector(from, to).{}`", fact.key);
+            vec![form, "metres".to_owned(), reach(Reach::Laser), fact.purpose.to_owned()]
+        });
+        let rows = values.chain(calls).chain(sector);
+        format!("### `{group}`\n\n{about}\n\n{}", table(&["fact", "unit", "values", "what it is"], rows))
+    });
+    groups.collect::<Vec<_>>().join("\n\n")
+}
+
+fn reach(reach: Reach) -> String {
+    match reach {
+        Reach::Laser => "`laser.min_range_m` to `laser.max_range_m`".to_owned(),
+        Reach::Between(low, high) => format!("{low} to {high}"),
+        Reach::From(low) => format!("from {low}"),
+        Reach::Any => String::new(),
+    }
+}
+
+fn functions() -> String {
+    table(
+        &["function", "what it does"],
+        FUNCTIONS.iter().map(|row| vec![format!("`{}`", row.form), row.purpose.to_owned()]),
+    )
+}
+
+fn limits() -> String {
+    let rows = [
+        ("operations of the interpreter in one call", sandbox::MAX_OPERATIONS),
+        ("functions that call one another", sandbox::MAX_CALL_LEVELS as u64),
+        ("brackets and operators within one another", sandbox::MAX_NESTING as u64),
+        ("bytes of one text", sandbox::MAX_TEXT_BYTES as u64),
+        ("values in an array", sandbox::MAX_ARRAY as u64),
+        ("keys in a map", sandbox::MAX_MAP as u64),
+        ("variables at one time", sandbox::MAX_VARIABLES as u64),
+        ("functions in a script", sandbox::MAX_FUNCTIONS as u64),
+        ("bytes of a script", source::MAX_BYTES),
+    ];
+    table(&["what", "at most"], rows.iter().map(|(what, most)| vec![(*what).to_owned(), most.to_string()]))
+}
+
+/// What an editor needs to complete and explain a script: a Rhai definition file.
+#[must_use]
+pub fn definitions() -> String {
+    let mut out = "module static;\n".to_owned();
+    for (group, about) in GROUPS {
+        let _ = write!(out, "\n/// {about}\nlet {group}: {};\n", type_of(group));
+        for fact in FACTS.iter().filter(|fact| fact.group == *group) {
+            let kind = match fact.kind() {
+                "number" => "float",
+                "whole number" => "int",
+                _ => "bool",
+            };
+            let unit = if fact.unit.is_empty() { String::new() } else { format!(" ({})", fact.unit) };
+            let _ = write!(
+                out,
+                "/// {}{unit}\nfn get {}({group}: {}) -> {kind};\n",
+                fact.purpose,
+                fact.key,
+                type_of(group)
+            );
+        }
+    }
+    for fact in SECTOR {
+        let _ = write!(out, "\n/// {} (metres)\nfn get {}(sector: Sector) -> float;\n", fact.purpose, fact.key);
+    }
+    for call in CALLS {
+        let _ = write!(out, "\n/// {} Written: {}\n", call.purpose, call.form);
+        let (name, arguments) = match call.key {
+            "[" => ("index$get$", "int".to_owned()),
+            key => (key, vec!["_"; call.arguments].join(", ")),
+        };
+        let _ = writeln!(out, "fn {name}({}: {}, {arguments});", call.group, type_of(call.group));
+    }
+    for row in FUNCTIONS {
+        let _ = write!(out, "\n/// {}\nfn {};\n", row.purpose, row.form.replace("array.", ""));
+    }
+    for row in SETUP {
+        let _ = write!(out, "\n/// {} For example {}\nfn {}(...);\n", row.purpose, row.form, row.name);
+    }
+    out
+}
+
+fn type_of(group: &str) -> String {
+    let mut chars = group.chars();
+    chars.next().map_or(String::new(), |first| first.to_uppercase().chain(chars).collect())
+}

@@ -1,0 +1,93 @@
+//! What the parser refuses, and functions that do not exist, in plain words, in the user's own line.
+
+use super::setup_table::SETUP;
+use super::syntax::OURS;
+use crate::diagnostic::{Diagnostic, SourceText, nearest_name, printable};
+use crate::judge::explain::{limit, lower, mistake, mistake_at, unknown_name};
+use crate::judge::functions::FUNCTIONS;
+use crate::judge::sandbox;
+use rhai::{LexError, ParseError, ParseErrorType};
+
+/// An error of the parser.
+pub(super) fn syntax(source: &SourceText, error: &ParseError, own_names: &[String]) -> Diagnostic {
+    let ParseError(kind, position) = error;
+    let at = |message: String, label: &str| mistake(source, "E-SCRIPT-SYNTAX", *position, message, label);
+    match &**kind {
+        ParseErrorType::BadInput(LexError::ImproperSymbol(mark, message)) if mark == OURS => {
+            mistake(source, "E-SCRIPT-RULE", *position, message, "found this")
+        }
+        ParseErrorType::VariableUndefined(name) => unknown_name(source, *position, name, own_names),
+        ParseErrorType::Reserved(word)
+        | ParseErrorType::UnknownOperator(word)
+        | ParseErrorType::BadInput(LexError::ImproperSymbol(word, _)) => {
+            let help = match word.as_str() {
+                "**" | "**=" => "write pow(x, y), or x * x",
+                "print" | "debug" => "`engine check` shows the facts and the rules that fire",
+                "===" => "write == to compare",
+                "=" => "write == to compare",
+                _ => "choose another word",
+            };
+            let what = if sandbox::is_refused(word) { "cannot be used in a script" } else { "has no meaning here" };
+            at(format!("'{}' {what}", printable(word)), "not here").help(help)
+        }
+        ParseErrorType::UnexpectedEOF => at("the script ends too early".to_owned(), "something is missing here")
+            .help("look for a bracket that is never closed"),
+        ParseErrorType::MissingToken(token, _) if token == ";" => {
+            at("a ';' is missing before this".to_owned(), "a new statement begins here")
+                .help("end every statement with ';'")
+        }
+        ParseErrorType::MissingToken(token, _) => {
+            at(format!("'{}' is missing here", printable(token)), "expected before this")
+        }
+        ParseErrorType::ExprExpected(_) => at("a value or a condition is missing here".to_owned(), "found this"),
+        kind if let Some(most) = most_of(kind) => limit(source, *position, most),
+        ParseErrorType::PropertyExpected => {
+            at("after '.' comes the name of a fact or a function".to_owned(), "this is neither")
+        }
+        ParseErrorType::VariableExists(name) => {
+            at(format!("'{}' is defined twice", printable(name)), "the second time").help("choose another name")
+        }
+        ParseErrorType::AssignmentToConstant(name) => {
+            at(format!("'{}' is a constant: it cannot be changed", printable(name)), "changed here")
+                .help("define it with 'let' instead of 'const'")
+        }
+        ParseErrorType::DuplicatedProperty(name) => mistake(
+            source,
+            "E-SCRIPT-SETTING",
+            *position,
+            format!("'{}' is given twice", printable(name)),
+            "again here",
+        ),
+        ParseErrorType::FnDuplicatedDefinition(name, _) => {
+            at(format!("the function '{}' is defined twice", printable(name)), "the second time")
+        }
+        other => at(lower(&printable(&other.to_string())), "here"),
+    }
+}
+
+fn most_of(kind: &ParseErrorType) -> Option<String> {
+    Some(match kind {
+        ParseErrorType::ExprTooDeep => {
+            format!("brackets or operators are nested too deep: at most {}", sandbox::MAX_NESTING)
+        }
+        ParseErrorType::TooManyFunctions => format!("a script may have {} functions", sandbox::MAX_FUNCTIONS),
+        ParseErrorType::LiteralTooLarge(_, most) => format!("this is too long: at most {most}"),
+        _ => return None,
+    })
+}
+
+/// A function that does not exist, with the nearest that does.
+pub(super) fn unknown_function_at(source: &SourceText, at: usize, name: &str, own: &[String]) -> Diagnostic {
+    let known = FUNCTIONS.iter().map(|row| row.name).chain(SETUP.iter().map(|row| row.name));
+    let near = nearest_name(name, known.chain(own.iter().map(String::as_str)));
+    let message = format!("there is no function '{}' in a script", printable(name));
+    let diagnostic = mistake_at(source, "E-SCRIPT-NAME", at, message, "not known");
+    match (near, name) {
+        (Some(near), _) => diagnostic.help(format!("did you mean '{near}'?")),
+        (None, "print" | "debug") => diagnostic.help("`engine check` shows the facts and the rules that fire"),
+        (None, _) => {
+            let names: Vec<_> = FUNCTIONS.iter().map(|row| row.name).collect();
+            diagnostic.help(format!("there are: {}", names.join(", ")))
+        }
+    }
+}

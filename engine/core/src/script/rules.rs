@@ -1,0 +1,166 @@
+//! The rules of a script, checked and compiled.
+
+use super::compile::Compiler;
+use super::parts::parts;
+use super::positions::span;
+use super::source::Code;
+use super::spoilt::Spoilt;
+use super::syntax::{TimeUnit, WrittenRule, written_rules};
+use crate::diagnostic::{Diagnostic, Mistakes, Result, printable};
+use crate::judge::explain;
+use crate::judge::expression::{Flag, Number, Typed};
+use crate::judge::needs::Needs;
+use crate::judge::rule::{Clause, Persistence, Rule, RuleText, ScriptClause};
+use rhai::{AST, ASTNode, Expr, Module, Scope, Shared, Stmt};
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+
+/// Longest persistence.
+const MAX_TIME: f64 = 1e6;
+
+/// Every rule without a mistake in it.
+pub(super) fn rules(
+    code: &Code,
+    ast: &AST,
+    constants: &Scope<'static>,
+    needs: &mut Needs,
+    spoilt: &Spoilt<'_>,
+    mistakes: &mut Mistakes,
+) -> Vec<Rule> {
+    let mut rules: Vec<Rule> = Vec::new();
+    let mut lines: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut compiler = Compiler { constants, needs };
+    let has_reward = ast.iter_functions().any(|function| function.name == "reward");
+    let written = written_rules(ast.statements());
+    for written in &written {
+        let name_at = |message: String, label: &str| {
+            explain::mistake(&code.source, "E-SCRIPT-RULE", written.name_position, message, label)
+        };
+        let (line, _) = code.source.position(explain::offset(&code.source, written.position));
+        if let Some(before) = lines.get(written.name) {
+            let wrong =
+                name_at(format!("there are two rules called \"{}\"", printable(written.name)), "the second one");
+            mistakes.add(wrong.help(format!("choose another name; the first is in line {before}")));
+        } else if written.name == "reward" && has_reward {
+            mistakes.add(name_at("a rule cannot be called \"reward\" beside 'fn reward'".to_owned(), "here"));
+        }
+        lines.entry(written.name).or_insert(line);
+        rules.extend(compiled(code, written, ast.shared_lib(), &mut compiler, spoilt, mistakes));
+    }
+    rules
+}
+
+/// Checks and compiles a rule; nothing if there is a mistake in it. Each is added to `mistakes`: an empty name, a
+/// condition that is none, a value that is no number, a time that is no time.
+fn compiled(
+    code: &Code,
+    written: &WrittenRule<'_>,
+    library: &Shared<Module>,
+    compiler: &mut Compiler<'_>,
+    spoilt: &Spoilt<'_>,
+    mistakes: &mut Mistakes,
+) -> Option<Rule> {
+    let source = &code.source;
+    let count = mistakes.count();
+    if written.name.trim().is_empty() {
+        let message = "a rule's name must not be empty";
+        mistakes.add(explain::mistake(source, "E-SCRIPT-RULE", written.name_position, message, "no name"));
+    }
+    let start = explain::offset(source, written.position);
+    let text = source.text[code.statement(start)].trim_end_matches(';').trim_end().to_owned();
+    let (line, _) = source.position(start);
+    let condition_span = span(code, written.condition);
+    let value_span = span(code, written.value);
+    let time_span = written.time.map_or(0..0, |(time, _)| span(code, time));
+    let sound = |span: &Range<usize>, mistakes: &Mistakes| !spoilt.touches(span, mistakes);
+    let condition = sound(&condition_span, mistakes)
+        .then(|| condition(code, written, &condition_span, library, compiler))
+        .and_then(|condition| mistakes.take(condition));
+    let value = sound(&value_span, mistakes)
+        .then(|| value(code, written, &value_span, library, compiler))
+        .and_then(|value| mistakes.take(value));
+    let persistence = sound(&time_span, mistakes)
+        .then(|| persistence(code, written, compiler))
+        .and_then(|persistence| mistakes.take(persistence));
+    let (condition, value, persistence) = (condition?, value?, persistence?);
+    if mistakes.count() > count {
+        return None;
+    }
+    let text = RuleText { name: written.name.to_owned(), line, text };
+    let (recover, parts) = (written.recover, parts(code, written.condition, compiler));
+    Some(Rule { text, condition, condition_span, persistence, value, value_span, recover, parts })
+}
+fn wrong(code: &Code, message: &str, span: &Range<usize>, label: &str) -> Diagnostic {
+    Diagnostic::new("E-SCRIPT-RULE", message).at(&code.source, span.clone(), label)
+}
+
+fn condition(
+    code: &Code,
+    written: &WrittenRule<'_>,
+    span: &Range<usize>,
+    library: &Shared<Module>,
+    compiler: &mut Compiler<'_>,
+) -> Result<Clause<Flag>> {
+    match compiler.clause(written.condition) {
+        Some(Typed::Flag(flag)) => Ok(Clause::Native(flag)),
+        None => Ok(Clause::Script(script(written, written.condition, library))),
+        Some(_) => wrong(code, "a condition must be true or false", span, "this is a number")
+            .help("compare it: laser.nearest < 0.25")
+            .fail(),
+    }
+}
+
+fn value(
+    code: &Code,
+    written: &WrittenRule<'_>,
+    span: &Range<usize>,
+    library: &Shared<Module>,
+    compiler: &mut Compiler<'_>,
+) -> Result<Clause<Number>> {
+    match compiler.clause(written.value) {
+        Some(Typed::Number(Number::Constant(value)) | Typed::Whole(Number::Constant(value))) if !value.is_finite() => {
+            wrong(code, "a rule's value must be a finite number", span, "too large").fail()
+        }
+        Some(Typed::Number(number) | Typed::Whole(number)) => Ok(Clause::Native(number)),
+        Some(Typed::Flag(_)) => wrong(code, "a rule's value must be a number", span, "this is true or false")
+            .help("write a number, such as -1")
+            .fail(),
+        None => Ok(Clause::Script(script(written, written.value, library))),
+    }
+}
+
+fn script(written: &WrittenRule<'_>, expr: &Expr, library: &Shared<Module>) -> ScriptClause {
+    let mut roots = BTreeSet::new();
+    expr.walk(&mut Vec::new(), &mut |path: &[ASTNode<'_>]| {
+        if let Some(ASTNode::Expr(Expr::Variable(variable, None, _))) = path.last() {
+            roots.insert(variable.1.to_string());
+        }
+        true
+    });
+    let statement = Stmt::Expr(Box::new(expr.clone()));
+    ScriptClause { ast: AST::new([statement], library.clone()), variables: written.variables, roots }
+}
+
+fn persistence(code: &Code, written: &WrittenRule<'_>, compiler: &mut Compiler<'_>) -> Result<Persistence> {
+    let Some((time, unit)) = written.time else {
+        return Ok(Persistence::Steps(1));
+    };
+    let span = span(code, time);
+    let wrong =
+        |message: &str, label: String| Diagnostic::new("E-SCRIPT-RULE", message).at(&code.source, span.clone(), label);
+    let number = match compiler.expression(time) {
+        Some(Typed::Number(Number::Constant(number)) | Typed::Whole(Number::Constant(number))) => number,
+        _ => return wrong("the time of a rule must be a plain number", "found something else".to_owned()).fail(),
+    };
+    if !(number > 0.0 && number <= MAX_TIME) {
+        let message = format!("the time of a rule must be greater than 0 and at most {MAX_TIME}");
+        return wrong(&message, format!("found {number}")).help("leave out 'for ...' to fire at once").fail();
+    }
+    match unit {
+        TimeUnit::Seconds => Ok(Persistence::Seconds(number)),
+        TimeUnit::Steps if number.fract() == 0.0 => Ok(Persistence::Steps(number as u32)),
+        TimeUnit::Steps => wrong("steps are counted in whole numbers", format!("found {number}"))
+            .help("write 'seconds' instead")
+            .fail(),
+    }
+}

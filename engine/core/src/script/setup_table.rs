@@ -1,0 +1,41 @@
+//! The one list of set-up calls: scripts, near names, the reference page and editors read it.
+
+/// One row of the list of set-up calls.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SetupCall {
+    /// Its name: `camera`.
+    pub name: &'static str,
+    /// How it is written.
+    pub form: &'static str,
+    /// One sentence: what it sets.
+    pub purpose: &'static str,
+}
+
+const fn row(name: &'static str, form: &'static str, purpose: &'static str) -> SetupCall {
+    SetupCall { name, form, purpose }
+}
+
+/// Every set-up call.
+pub(super) const SETUP: &[SetupCall] = &[
+    row("world", "world(\"room\");", "The world to learn in: its name, or the path of a world file."),
+    row(
+        "filter",
+        "filter(\"sobel\", #{ threshold: 60 });",
+        "One stage of the filter chain; several calls make a chain.",
+    ),
+    row("actions", "actions([[0.4, 0.2], [0.4, 0.0]]);", "The actions: forward speed in m/s, turning speed in rad/s."),
+    row("run", "run(#{ steps: 5200 });", "The length and the rhythm of a run."),
+    row("robot", "robot(#{ lag_s: 0.15 });", "How the robot moves."),
+    row("camera", "camera(#{ tilt_deg: 42 });", "The camera and its mount."),
+    row("laser", "laser(#{ tilt_deg: 45 });", "The laser and its mount."),
+    row("grid", "grid(#{ rows: 3, columns: 3 });", "How a filtered image becomes a state."),
+    row("learner", "learner(\"ttd\", #{ step_size: 0.2 });", "The way of learning and its parameters."),
+    row("recovery", "recovery(\"nearest\", #{ yaw_deg: 8.6 });", "What `then recover` does."),
+    row("movers", "movers(#{ speed: 1.5 });", "What drives by itself in the world."),
+    row(
+        "policy",
+        "policy(\"avoid\", \"runs/avoid/1\");",
+        "A learned policy to combine: a name, and its run or its file.",
+    ),
+    row("combine", "combine(\"priority\", #{ margin: 0.05 });", "How two or more policies become one."),
+];

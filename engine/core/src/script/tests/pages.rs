@@ -1,0 +1,87 @@
+//! The pages and the scripts that come with the engine.
+
+use super::super::setup_table::SETUP;
+use super::super::{Behaviour, definitions, reference};
+use crate::judge::Judgement;
+use crate::judge::fact_table::FACTS;
+use crate::judge::functions::FUNCTIONS;
+use std::path::{Path, PathBuf};
+
+fn scripts() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts")
+}
+
+#[test]
+fn the_page_about_scripts_is_the_generated_one() {
+    let path = scripts().join("README.md");
+    if std::env::var_os("UPDATE_PAGES").is_some() {
+        std::fs::write(&path, reference()).unwrap();
+    }
+    assert!(std::fs::read_to_string(&path).unwrap() == reference(), "run the tests with UPDATE_PAGES=1");
+}
+
+#[test]
+fn every_script_loads() {
+    for name in ["wall", "corridor", "platform", "object", "avoid", "follow-and-avoid"] {
+        let behaviour =
+            Behaviour::load(&scripts().join(format!("{name}.rhai"))).unwrap_or_else(|wrong| panic!("{wrong:?}"));
+        assert_eq!(behaviour.name(), name);
+    }
+}
+
+#[test]
+fn every_example_on_the_page_loads() {
+    let page = reference();
+    let examples: Vec<_> = page.split("```rhai\n").skip(1).filter_map(|part| part.split("```").next()).collect();
+    assert!(examples.len() > 3);
+    for example in examples {
+        super::parse(example).unwrap_or_else(|wrong| panic!("{wrong:?}"));
+    }
+}
+
+#[test]
+fn every_form_in_the_lists_works() {
+    for row in FUNCTIONS {
+        let form =
+            row.form.replace("array.", "[1, 2].").replace("value", "1").replace("range(from, to, step)", "len([1])");
+        let words = ["radians)", "degrees)", "angle", "low", "high", "x", "y", "a", "b"];
+        let (name, arguments) = form.split_once('(').unwrap();
+        let with = words.iter().fold(format!("({arguments}"), |text, word| match *word {
+            "radians)" | "degrees)" => text.replace(word, "0.5)"),
+            word => text.replace(&format!("({word}"), "(0.5").replace(&format!(", {word}"), ", 0.5"),
+        });
+        let script = format!("fn reward(facts) {{ let got = {name}{with}; 1 }}");
+        super::parse(&script).unwrap_or_else(|wrong| panic!("{script}: {wrong:?}"));
+    }
+    for row in SETUP {
+        super::parse(&format!("{} rule \"a\" when true => 1;", row.form)).unwrap_or_else(|wrong| panic!("{wrong:?}"));
+    }
+    for fact in FACTS {
+        let script = format!("fn reward(facts) {{ let got = facts.{}; 1 }}", fact.name());
+        super::parse(&script).unwrap_or_else(|wrong| panic!("{script}: {wrong:?}"));
+    }
+}
+
+#[test]
+fn the_definitions_name_every_fact() {
+    let text = definitions();
+    assert!(FACTS.iter().all(|fact| text.contains(&format!("fn get {}({}: ", fact.key, fact.group))));
+}
+
+#[test]
+fn the_platform_script_sees_an_edge_beside_the_front_beam() {
+    let behaviour = Behaviour::load(&scripts().join("platform.rhai")).unwrap();
+    let mut judge = behaviour.judge(0.33, 181).unwrap();
+    judge.facts_mut().grid = (3, 3);
+    for beam in 0..181_usize {
+        let angle = (beam as f64 - 90.0).to_radians();
+        judge.facts_mut().ranges_m[beam] = (0.537 / libm::cos(angle)).clamp(0.2, 8.192) as f32;
+    }
+    judge.calibrate().unwrap();
+    assert_eq!(judge.judge().unwrap(), Judgement::default());
+    judge.facts_mut().ranges_m[130] += 0.16;
+    assert_eq!(judge.judge().unwrap(), Judgement { reward: -1.0, recover: true });
+    judge.facts_mut().ranges_m[130] -= 0.16;
+    judge.facts_mut().ranges_m[131] += 0.16;
+    assert_eq!(judge.judge().unwrap(), Judgement::default());
+}

@@ -1,0 +1,158 @@
+//! Native rules and interpreted ones give the same.
+
+use super::super::Behaviour;
+use super::parse;
+use crate::judge::Facts;
+use crate::judge::rule::{Clause, Rule};
+use crate::random::{Random, Stream};
+
+const BEAMS: usize = 9;
+
+/// A random script; every rule stands there twice, once behind a function call, which keeps it interpreted.
+struct Writer {
+    random: Random,
+}
+
+impl Writer {
+    fn one_of<'a>(&mut self, of: &[&'a str]) -> &'a str {
+        of[self.random.below(of.len() as u32) as usize]
+    }
+
+    fn number(&mut self, depth: u32) -> String {
+        let leaves = [
+            "laser.nearest",
+            "laser.left",
+            "laser.front",
+            "facts.laser.right",
+            "laser[3]",
+            "facts.laser[BEAM]",
+            "HALF",
+            "laser.sector(2, 6).farthest",
+            "laser.sector(0, BEAM).mean",
+            "camera.coverage",
+            "camera.cell(1, 2)",
+            "action.linear",
+            "action.angular",
+            "robot.linear",
+            "0.75",
+            "-1.5",
+            "calibrated.front",
+            "laser.sector(1, 2).excess(calibrated.pair)",
+            "facts.calibrated.front",
+        ];
+        if depth == 0 {
+            return self.one_of(&leaves).to_owned();
+        }
+        let (a, b) = (self.number(depth - 1), self.number(depth - 1));
+        let whole = self.whole();
+        match self.random.below(9) {
+            0 => format!("({a} {} {b})", self.one_of(&["+", "-", "*", "/", "%"])),
+            1 => format!("({a} {} {whole})", self.one_of(&["+", "-", "*", "/", "%"])),
+            2 => format!("({whole} {} {b})", self.one_of(&["+", "-", "*", "/"])),
+            3 => format!("{}({a}, {b})", self.one_of(&["min", "max", "pow", "hypot", "atan2"])),
+            4 => format!(
+                "{}({a})",
+                self.one_of(&["abs", "sqrt", "sin", "exp", "ln", "floor", "round", "radians", "tanh"])
+            ),
+            5 => format!("{}({whole})", self.one_of(&["sqrt", "cos", "radians", "to_float"])),
+            6 => format!("-({a})"),
+            7 => format!("max({a}, {whole})"),
+            _ => a,
+        }
+    }
+
+    fn whole(&mut self) -> String {
+        let leaves = [
+            "laser.beams",
+            "laser.nearest_beam",
+            "action.index",
+            "state.index",
+            "time.step",
+            "time.since_recovery",
+            "3",
+            "-2",
+            "0",
+            "BEAM",
+            "laser.sector(0, 8).count_below(0.5)",
+            "-(BEAM)",
+        ];
+        self.one_of(&leaves).to_owned()
+    }
+
+    fn flag(&mut self, depth: u32) -> String {
+        let compare = ["<", "<=", ">", ">=", "==", "!="];
+        if depth == 0 {
+            let (a, b, whole, other) = (self.number(1), self.number(1), self.whole(), self.whole());
+            return match self.random.below(6) {
+                0 => format!("{a} {} {b}", self.one_of(&compare)),
+                1 => format!("{whole} {} {other}", self.one_of(&compare)),
+                2 => format!("{a} {} {whole}", self.one_of(&compare)),
+                3 => format!("laser {} {b}", self.one_of(&compare[..4])),
+                4 => format!("{} < laser.sector(1, 4)", whole),
+                _ => self
+                    .one_of(&["camera.seen", "robot.contact", "!facts.robot.fallen", "ON", "camera.seen == ON"])
+                    .to_owned(),
+            };
+        }
+        let (a, b) = (self.flag(depth - 1), self.flag(depth - 1));
+        match self.random.below(4) {
+            0 => format!("({a}) && ({b})"),
+            1 => format!("({a}) || ({b})"),
+            2 => format!("!({a})"),
+            _ => format!("({a}) {} ({b})", self.one_of(&["==", "!="])),
+        }
+    }
+
+    fn facts(&mut self, facts: &mut Facts) {
+        let mut unit = || self.random.unit();
+        facts.ranges_m.iter_mut().for_each(|range| *range = (unit() * 2.0 + 0.2) as f32);
+        facts.cells = (0..9).map(|_| unit() as f32).collect();
+        facts.grid = (3, 3);
+        facts.coverage = unit();
+        (facts.action_linear, facts.action_angular) = (unit(), unit() - 0.5);
+        (facts.linear, facts.angular) = (unit() * 2.0 - 1.0, unit() - 0.5);
+        (facts.seen, facts.contact, facts.fallen) = (unit() < 0.5, unit() < 0.5, unit() < 0.5);
+        (facts.state, facts.action) = ((unit() * 64.0) as usize, (unit() * 14.0) as usize);
+        (facts.step, facts.since_recovery) = ((unit() * 1000.0) as u64, (unit() * 5.0) as u64);
+    }
+}
+
+const HEAD: &str = "laser(#{ beams: 9, min_range_m: 0, max_range_m: 100 });
+    const HALF = 0.5; let BEAM = 4; const ON = true;
+    fn same(x) { x }
+    fn calibrate(facts) { #{ front: facts.laser.front, pair: [1, 1.5] } }\n";
+
+#[test]
+fn native_rules_and_interpreted_rules_agree() {
+    let mut writer = Writer { random: Random::new(5, Stream::Test) };
+    let mut compared = 0;
+    for _ in 0..1500 {
+        let (flag, number) = (writer.flag(2), writer.number(2));
+        let native = parse(&format!("{HEAD} rule \"a\" when {flag} => {number};"));
+        let interpreted = parse(&format!("{HEAD} rule \"a\" when same({flag}) => same({number});"));
+        let (Ok(native), Ok(interpreted)) = (native, interpreted) else { continue };
+        let mut judges = [native.judge(0.5, BEAMS).unwrap(), interpreted.judge(0.5, BEAMS).unwrap()];
+        for _ in 0..4 {
+            writer.facts(judges[0].facts_mut());
+            let facts = judges[0].facts_mut().clone();
+            *judges[1].facts_mut() = facts;
+            let verdicts = judges.each_mut().map(|judge| {
+                judge.calibrate().unwrap();
+                judge.judge().map(|verdict| verdict.reward.to_bits()).map_err(|wrong| wrong.code)
+            });
+            assert_eq!(verdicts[0], verdicts[1], "when {flag} => {number}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 4000, "{compared}");
+}
+
+#[test]
+fn the_rules_of_the_scripts_are_native() {
+    for name in ["wall", "corridor", "platform", "object"] {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../scripts/{name}.rhai"));
+        let judge = Behaviour::load(&path).unwrap().judge(0.5, 181).unwrap();
+        let native = |rule: &Rule| matches!((&rule.condition, &rule.value), (Clause::Native(_), Clause::Native(_)));
+        assert!(judge.present().loaded.rules.iter().all(native), "{name}");
+    }
+}
