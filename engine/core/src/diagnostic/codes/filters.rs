@@ -60,6 +60,11 @@ pub(super) const PAGES: &[(&str, &str)] = &[
          It is refused before anything in it runs. Build it again on this machine with the contract of this engine: plugins/filter-api.",
     ),
     (
+        "E-NATIVE-BUILD",
+        "This engine was built without native filters.\n\
+         Build it with its feature native-filters, which is on by default, or ask the author for the filter in WebAssembly.",
+    ),
+    (
         "E-NATIVE-DENIED",
         "A native filter can do all that you can do, from the moment it is loaded: read, change and send your files.\n\
          So none is loaded unless you name its digest. If you know where it comes from, paste the line of the message.\n\
