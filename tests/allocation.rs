@@ -5,6 +5,7 @@ use std::cell::Cell;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use engine::diagnostic::SourceText;
 use engine::experiment::{Ledger, Overrides, Plan, learn_into};
 use engine::script::Behaviour;
 
@@ -56,4 +57,14 @@ fn more_steps_allocate_nothing_more() {
         let plan = Plan::new(Arc::new(behaviour), &Overrides::default()).unwrap();
         assert_eq!(allocations(&plan, 5_000), allocations(&plan, 1_000), "{script}");
     }
+}
+
+#[test]
+fn more_steps_through_scharr_allocate_nothing_more() {
+    let path = root().join("scripts/wall.rhai");
+    let text = std::fs::read_to_string(&path).unwrap().replace("\"sobel\"", "\"scharr\"");
+    let behaviour = Behaviour::parse("wall", SourceText::new(path, text)).unwrap();
+    let plan = Plan::new(Arc::new(behaviour), &Overrides::default()).unwrap();
+    assert_eq!(plan.settings.filters[0].name, "scharr");
+    assert_eq!(allocations(&plan, 5_000), allocations(&plan, 1_000));
 }

@@ -10,8 +10,8 @@ use sha2::{Digest, Sha256};
 
 use super::root;
 
-/// The filters of this project that need no other library, and so can be built without Cargo.
-pub(crate) const PLAIN: [&str; 6] = ["blur", "colour", "floor", "horizon", "sobel", "threshold"];
+/// The filters of this project, none of which needs another library: they can be built without Cargo.
+pub(crate) const FILTERS: [&str; 7] = ["blur", "colour", "floor", "horizon", "scharr", "sobel", "threshold"];
 
 /// What they are built with: the contract, and what compiles them for each processor.
 const LIBRARIES_OF_FILTERS: [(&str, &str); 2] =
@@ -39,7 +39,7 @@ pub(crate) fn entries(catalogue: &Catalogue) -> Vec<Arc<Entry>> {
     catalogue.list().map(|(name, ..)| catalogue.find(name).unwrap()).collect()
 }
 
-/// The plain filters of this project in every form but linked in, by the words for it; built once.
+/// The filters of this project in every form but linked in, by the words for it; built once.
 pub(crate) fn forms() -> Vec<(&'static str, Arc<Catalogue>)> {
     static FOLDERS: OnceLock<Vec<(&str, PathBuf)>> = OnceLock::new();
     let folders = FOLDERS.get_or_init(|| {
@@ -64,7 +64,7 @@ fn folder(form: &str) -> PathBuf {
 
 fn native() -> PathBuf {
     let folder = folder("native");
-    for name in PLAIN {
+    for name in FILTERS {
         let source = root().join(format!("plugins/{name}/src/lib.rs"));
         rust_native(&source, name, &folder);
     }
@@ -98,7 +98,7 @@ pub(crate) fn rust_native(source: &Path, name: &str, folder: &Path) {
     done(rustc.arg("-o").arg(folder.join(format!("lib{name}.so"))));
 }
 
-/// The plain filters as WebAssembly, if some Rust compiler here can make it.
+/// The filters as WebAssembly, if some Rust compiler here can make it.
 fn wasm(features: &str) -> Option<PathBuf> {
     let has_target = |rustc: &&str| {
         let told = Command::new(rustc).args(["--print", "sysroot"]).output();
@@ -125,7 +125,7 @@ fn wasm(features: &str) -> Option<PathBuf> {
         done(&mut command("rlib", name, &root().join(source), &path));
         format!("--extern={name}={}", path.display())
     });
-    for name in PLAIN {
+    for name in FILTERS {
         let (source, out) = (root().join(format!("plugins/{name}/src/lib.rs")), folder.join(format!("{name}.wasm")));
         let mut command = command("cdylib", name, &source, &out);
         done(command.arg("--cfg=filter_library").args(&libraries));

@@ -1,16 +1,17 @@
 //! Scharr edges: as Sobel, with a kernel that weighs all directions more evenly.
 //!
-//! The gradients come from `imageproc::gradients`: `gx = [-3 0 3; -10 0 10; -3 0 3]` and its transpose on luma, pixels
-//! outside the frame having the value of the nearest one inside. A pixel is an edge where `gx² + gy² >= threshold²`, so a
-//! step of one grey level has a norm of 16. All of it is whole-number arithmetic.
+//! * Kernels: `gx = [-3 0 3; -10 0 10; -3 0 3]` and `gy` its transpose, on luma as sobel has it.
+//! * Border rule: pixels outside the frame have the value of the nearest pixel inside.
+//! * Norm: Euclidean. A pixel is an edge where `gx² + gy² >= threshold²`, so a step of one grey level has a norm of 16.
 //!
-//! One clause of the contract the library does not keep: it allocates both gradients for each frame.
+//! All of it is whole-number arithmetic.
 
 #![deny(unsafe_code)]
 
+mod kernel;
+
+use dispatch::Processor;
 use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, ParameterKind, Plugin};
-use image::GrayImage;
-use imageproc::gradients::{horizontal_scharr, vertical_scharr};
 
 /// The filter, ready to be registered.
 pub const PLUGIN: Plugin = Plugin { descriptor: &DESCRIPTOR, create };
@@ -40,7 +41,9 @@ const DESCRIPTOR: Descriptor = Descriptor {
 struct Scharr {
     /// The square of the norm from which a pixel is an edge.
     least_square: i32,
-    luma: GrayImage,
+    /// Brightness of a colour frame.
+    luma: Vec<u8>,
+    processor: Processor,
 }
 
 fn create(values: &[f64]) -> Result<Box<dyn Filter>, FilterError> {
@@ -49,30 +52,26 @@ fn create(values: &[f64]) -> Result<Box<dyn Filter>, FilterError> {
     };
     // Gradients are whole numbers, so comparing with the next whole square is exact.
     let least_square = (threshold * threshold).ceil() as i32;
-    Ok(Box::new(Scharr { least_square, luma: GrayImage::new(0, 0) }))
+    Ok(Box::new(Scharr { least_square, luma: Vec::new(), processor: Processor::best() }))
 }
 
 impl Filter for Scharr {
     fn process(&mut self, input: Frame<'_>, mut output: FrameMut<'_>) -> Result<(), FilterError> {
         output.check_same_size(&input)?;
-        if input.format() == Format::Mask {
-            return Err(FilterError("scharr reads colour or grey frames, not a mask".to_owned()));
-        }
-        let (Ok(width), Ok(height)) = (u32::try_from(input.width_px()), u32::try_from(input.height_px())) else {
-            return Err(FilterError("scharr cannot read a frame as large as this".to_owned()));
-        };
+        let (width, height) = (input.width_px(), input.height_px());
         if width == 0 || height == 0 {
             return Ok(());
         }
-        if self.luma.dimensions() != (width, height) {
-            self.luma = GrayImage::new(width, height);
-        }
-        input.write_luma(&mut self.luma)?;
-        let (across, down) = (horizontal_scharr(&self.luma), vertical_scharr(&self.luma));
-        for ((gx, gy), out) in across.iter().zip(down.iter()).zip(output.pixels()) {
-            let square = i32::from(*gx) * i32::from(*gx) + i32::from(*gy) * i32::from(*gy);
-            *out = if square >= self.least_square { 255 } else { 0 };
-        }
+        let luma = match input.format() {
+            Format::Grey => input.pixels(),
+            Format::Rgb => {
+                self.luma.resize(width * height, 0);
+                input.write_luma(&mut self.luma)?;
+                &self.luma
+            }
+            Format::Mask => return Err(FilterError("scharr reads colour or grey frames, not a mask".to_owned())),
+        };
+        kernel::mark_edges(self.processor, luma, width, self.least_square, output.pixels());
         Ok(())
     }
 }

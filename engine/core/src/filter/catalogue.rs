@@ -6,39 +6,17 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use filter_api::{Descriptor, FilterError, Plugin};
+use filter_api::{FilterError, Plugin};
 
+use super::entry::{Entry, Form};
 use super::running::{Linked, Running, refused};
 use super::trust::Trust;
-use super::{native, wasm, worker};
+use super::{native, wasm};
 use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
 
 /// The filters that are linked in, by name.
 pub const LINKED_IN: &[Plugin] =
     &[blur::PLUGIN, colour::PLUGIN, floor::PLUGIN, horizon::PLUGIN, scharr::PLUGIN, sobel::PLUGIN, threshold::PLUGIN];
-
-/// How a filter comes into the program.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Form {
-    /// Part of the program.
-    LinkedIn,
-    /// A native shared library, with all rights of the user.
-    Native,
-    /// A WebAssembly module in a sandbox.
-    Wasm,
-}
-
-impl Form {
-    /// In words.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::LinkedIn => "linked in",
-            Self::Native => "native",
-            Self::Wasm => "WebAssembly",
-        }
-    }
-}
 
 /// Where filters come from, besides the program itself.
 #[derive(Debug, Clone, Default)]
@@ -51,32 +29,6 @@ pub struct Sources {
     pub worker: Option<PathBuf>,
     /// Leaves the linked-in filters out, so that a folder may hold the same names: for comparing forms.
     pub without_linked_in: bool,
-}
-
-/// Makes an instance from checked values.
-type Create = Box<dyn Fn(&[f64]) -> Result<Box<dyn Running>> + Send + Sync>;
-
-/// A filter that can be used.
-pub struct Entry {
-    /// What the filter says of itself.
-    pub descriptor: &'static Descriptor,
-    /// How it comes into the program.
-    pub form: Form,
-    /// The file that it was loaded from.
-    pub path: Option<PathBuf>,
-    /// SHA-256 of that file, 64 hexadecimal digits.
-    pub sha256: Option<String>,
-    pub(super) create: Create,
-}
-
-impl Entry {
-    /// An instance with one value for each parameter, each within its range; whether it keeps the law is not tried.
-    ///
-    /// # Errors
-    /// If the filter refuses the values, breaks down, or is stopped by a limit.
-    pub fn start(&self, values: &[f64]) -> Result<Box<dyn Running>> {
-        (self.create)(values)
-    }
 }
 
 /// A file of a folder, opened when it is first asked for.
@@ -169,9 +121,9 @@ impl Catalogue {
     }
 
     fn open(&self, file: &File) -> Result<Arc<Entry>> {
-        let entry = match (file.form, &self.sources.worker) {
-            (Form::Native, None) => native::open(&file.path, &self.sources.trust)?,
-            (Form::Native, Some(program)) => worker::open(&file.path, &self.sources.trust, program)?,
+        let Sources { trust, worker, .. } = &self.sources;
+        let entry = match file.form {
+            Form::Native => native::open(&file.path, trust, worker.as_deref())?,
             _ => wasm::open(&file.path)?,
         };
         let own = entry.descriptor.name;

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use filter_api::{Descriptor, FilterError, Format, Frame, FrameMut, Parameter, ParameterKind};
 
-use super::catalogue::{Catalogue, Entry, Form};
+use super::catalogue::Catalogue;
+use super::entry::{Entry, Form};
 use super::purity;
 use super::running::Running;
 use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};

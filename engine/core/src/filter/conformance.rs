@@ -2,10 +2,10 @@
 
 use filter_api::{Format, Frame, FrameMut, Parameter};
 
-use super::catalogue::{Entry, Form};
-use super::purity::noise;
+use super::entry::Entry;
+use super::law::{broken, noise};
 use super::running::Running;
-use crate::diagnostic::{Diagnostic, Result};
+use crate::diagnostic::Result;
 
 /// Width and height in pixels, with the smallest there are, single rows and columns, odd and even.
 const SIZES: [(usize, usize); 10] =
@@ -110,17 +110,6 @@ fn settings(parameters: &[Parameter]) -> Vec<Vec<f64>> {
     let least = parameters.iter().map(|parameter| parameter.min).collect();
     let greatest = parameters.iter().map(|parameter| parameter.max).collect();
     std::iter::once(default.clone()).chain(alone).chain([least, greatest]).collect()
-}
-
-/// A clause of the law is broken.
-pub(super) fn broken<T>(entry: &Entry, what: &str) -> Result<T> {
-    let code = match entry.form {
-        Form::LinkedIn | Form::Native => "E-NATIVE-STATE",
-        Form::Wasm => "E-WASM-STATE",
-    };
-    let message = format!("filter '{}' breaks the law of filters: {what}", entry.descriptor.name);
-    let help = "tell its author: the same frame and parameters must give the same output, every byte of it";
-    Diagnostic::new(code, message).help(help).fail()
 }
 
 #[cfg(test)]

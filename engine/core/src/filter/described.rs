@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use filter_api::abi::BRIGHTNESS;
-use filter_api::{Descriptor, Format, Parameter, ParameterKind};
+use filter_api::{Descriptor, FilterError, Format, Frame, FrameMut, Parameter, ParameterKind};
 use serde::{Deserialize, Serialize};
 
+use super::running::failed;
 use crate::diagnostic::{Diagnostic, Result, printable};
 
 /// The most parameters that a filter may have.
@@ -130,6 +131,19 @@ fn is_name(name: &str) -> bool {
 /// Whether a text may be printed as it is: one line without control characters.
 fn is_text(text: &str) -> bool {
     !text.is_empty() && printable(text) == text
+}
+
+/// Checks what a stranger's filter may rely on: frames of its formats, equal in size.
+///
+/// # Errors
+/// If they are not.
+pub(super) fn check_frames(descriptor: &Descriptor, input: &Frame<'_>, output: &FrameMut<'_>) -> Result<()> {
+    let fault = match output.check_same_size(input) {
+        Err(FilterError(words)) => words,
+        Ok(()) if descriptor.reads.contains(&input.format()) && descriptor.writes == output.format() => return Ok(()),
+        Ok(()) => format!("it does not make {:?} of {:?} frames", output.format(), input.format()),
+    };
+    Err(failed("E-FILTER", descriptor.name, &fault))
 }
 
 #[cfg(test)]

@@ -6,19 +6,22 @@
 mod catalogue;
 mod chain;
 mod conformance;
+#[cfg(any(feature = "native-filters", feature = "wasm"))]
 mod described;
-mod library;
+#[cfg(any(feature = "native-filters", feature = "wasm"))]
+mod digest;
+mod entry;
+mod law;
 mod native;
 mod purity;
 mod running;
 mod trust;
 mod wasm;
-mod wire;
-mod worker;
 
-pub use catalogue::{Catalogue, Entry, Form, LINKED_IN, Sources, is_filter_file};
+pub use catalogue::{Catalogue, LINKED_IN, Sources, is_filter_file};
 pub use chain::{Chain, ChainError};
 pub use conformance::conformance;
+pub use entry::{Entry, Form};
+pub use native::serve;
 pub use running::Running;
 pub use trust::Trust;
-pub use worker::serve;

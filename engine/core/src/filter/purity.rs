@@ -3,8 +3,8 @@
 
 use filter_api::{Format, Frame, FrameMut};
 
-use super::catalogue::Entry;
-use super::conformance::broken;
+use super::entry::Entry;
+use super::law::{broken, noise};
 use crate::diagnostic::Result;
 
 const WIDTH_PX: usize = 24;
@@ -41,15 +41,4 @@ pub(super) fn check(entry: &Entry, values: &[f64], reads: Format) -> Result<()> 
         }
     }
     Ok(())
-}
-
-/// A frame of noise, the same on every machine: the multiplication hash of Knuth, volume 3, section 6.4.
-pub(super) fn noise(frame: u32, format: Format, pixels: usize) -> Vec<u8> {
-    let seed = (frame + 1).wrapping_mul(0x9e37_79b9);
-    let byte = |index: usize| {
-        let hash = (index as u32 ^ seed).wrapping_mul(2_654_435_761);
-        ((hash ^ (hash >> 15)).wrapping_mul(2_246_822_519) >> 24) as u8
-    };
-    let bytes = (0..pixels * format.channels()).map(byte);
-    if format == Format::Mask { bytes.map(|byte| if byte < 128 { 0 } else { 255 }).collect() } else { bytes.collect() }
 }

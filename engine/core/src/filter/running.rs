@@ -1,7 +1,7 @@
 //! A filter at work, whatever its form: the contract of filters with the engine's own errors.
 
 use crate::diagnostic::{Diagnostic, Result, printable};
-use filter_api::{Descriptor, Filter, FilterError, Frame, FrameMut};
+use filter_api::{Filter, FilterError, Frame, FrameMut};
 
 /// A filter that was created with its parameters.
 pub trait Running: Send {
@@ -22,19 +22,6 @@ impl Running for Linked {
     fn process(&mut self, input: Frame<'_>, output: FrameMut<'_>) -> Result<()> {
         self.filter.process(input, output).map_err(|FilterError(words)| failed("E-FILTER", self.name, &words))
     }
-}
-
-/// Checks what a stranger's filter may rely on: frames of its formats, equal in size.
-///
-/// # Errors
-/// If they are not.
-pub(super) fn check_frames(descriptor: &Descriptor, input: &Frame<'_>, output: &FrameMut<'_>) -> Result<()> {
-    let fault = match output.check_same_size(input) {
-        Err(FilterError(words)) => words,
-        Ok(()) if descriptor.reads.contains(&input.format()) && descriptor.writes == output.format() => return Ok(()),
-        Ok(()) => format!("it does not make {:?} of {:?} frames", output.format(), input.format()),
-    };
-    Err(failed("E-FILTER", descriptor.name, &fault))
 }
 
 /// Why a running filter gave no frame.

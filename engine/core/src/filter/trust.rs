@@ -1,9 +1,6 @@
 //! Which native libraries may be loaded: none, but those whose digest the user named.
 
-use std::fmt::Write;
 use std::path::Path;
-
-use sha2::{Digest, Sha256};
 
 use crate::diagnostic::{Diagnostic, Result, printable};
 
@@ -52,27 +49,16 @@ impl Trust {
         Ok(())
     }
 
-    /// Reads a library whose digest is allowed.
-    ///
-    /// # Errors
-    /// If it is not allowed: what that would mean, and the exact words that allow it.
-    pub(super) fn read(&self, path: &Path) -> Result<(Vec<u8>, String)> {
-        let bytes = read(path)?;
-        let digest = sha256(&bytes);
-        if self.allowed.contains(&digest) {
-            return Ok((bytes, digest));
-        }
-        let shown = printable(&path.display().to_string());
-        let (code, message) = if self.allowed.is_empty() {
-            ("E-NATIVE-DENIED", format!("'{shown}' is a native library and was not loaded"))
-        } else {
-            ("E-NATIVE-DENIED", format!("'{shown}' is not one of the native libraries that are allowed"))
-        };
-        let help = format!(
-            "a native filter can do all that you can do: read, change and send your files. If you trust it: \
-             --allow-native=sha256:{digest}"
-        );
-        Diagnostic::new(code, message).help(help).fail()
+    /// Whether a library with this digest, 64 hexadecimal digits, may be loaded.
+    #[must_use]
+    pub fn allows(&self, digest: &str) -> bool {
+        self.allowed.iter().any(|allowed| allowed == digest)
+    }
+
+    /// Whether no library at all may be loaded.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.allowed.is_empty()
     }
 }
 
@@ -88,19 +74,9 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
     std::fs::read(path).map_err(failed)
 }
 
-/// SHA-256 in 64 hexadecimal digits.
-pub(super) fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().fold(String::with_capacity(64), |mut digits, byte| {
-        // Writing to a String cannot fail.
-        let _ = write!(digits, "{byte:02x}");
-        digits
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnostic::Kind;
 
     #[test]
     fn only_whole_digests_are_taken() {
@@ -109,24 +85,5 @@ mod tests {
         for wrong in ["", "sha256:", "sha256:0a0a", &"0a".repeat(32), &format!("sha256:{}", "0A".repeat(32))] {
             assert_eq!(trust.allow(wrong).err().unwrap().code, "E-NATIVE-DIGEST", "{wrong}");
         }
-    }
-
-    #[test]
-    fn a_library_is_read_only_if_its_digest_is_allowed() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("ink.so");
-        std::fs::write(&path, "abc").unwrap();
-        // SHA-256 of "abc", FIPS 180-2 appendix B.1.
-        let digest = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
-        let mut trust = Trust::default();
-        let error = trust.read(&path).err().unwrap();
-        assert_eq!((error.code, error.kind()), ("E-NATIVE-DENIED", Kind::Trust));
-        assert!(error.help.unwrap().ends_with(&format!("--allow-native=sha256:{digest}")));
-        let file = folder.path().join("trust.toml");
-        std::fs::write(&file, format!("native = [\"sha256:{digest}\"]\n")).unwrap();
-        trust.allow_file(&file).unwrap();
-        assert_eq!(trust.read(&path).unwrap(), (b"abc".to_vec(), digest.to_owned()));
-        std::fs::write(&path, "abd").unwrap();
-        assert_eq!(trust.read(&path).err().unwrap().code, "E-NATIVE-DENIED");
     }
 }

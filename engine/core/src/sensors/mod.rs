@@ -3,7 +3,7 @@
 //! Both sensors work from the flat faces of solids (`surface`). The camera finds which face is seen in which run of
 //! each row (`view`, `drawing`, `spans`), lists the runs pixel by pixel (`stretches`) and
 //! colours them (`texture`, `painting`, `canvas`, `luma`). Images from elsewhere come as
-//! photographs (`photograph`).
+//! photographs (`photograph`, with the cargo feature `photographs`).
 
 pub mod observation;
 
@@ -15,6 +15,7 @@ mod lens;
 mod luma;
 mod noise;
 mod painting;
+#[cfg(feature = "photographs")]
 mod photograph;
 mod spans;
 mod stretches;
@@ -28,5 +29,6 @@ mod tests;
 
 pub use camera::Camera;
 pub use laser::Laser;
+#[cfg(feature = "photographs")]
 pub use photograph::{load_photograph, photograph_files};
 pub use watch::{CameraWatch, self_test};

@@ -73,6 +73,12 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          It is refused before anything in it runs. Build it again on this machine with the contract of this engine: plugins/filter-api.",
     ),
     (
+        "E-NATIVE-BUILD",
+        Kind::Usage,
+        "This engine was built without native filters.\n\
+         Build it with its feature native-filters, which is on by default, or ask the author for the filter in WebAssembly.",
+    ),
+    (
         "E-NATIVE-DENIED",
         Kind::Trust,
         "A native filter can do all that you can do, from the moment it is loaded: read, change and send your files.\n\

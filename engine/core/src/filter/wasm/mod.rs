@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::catalogue::Entry;
+use super::entry::Entry;
 use crate::diagnostic::{Diagnostic, Result, printable};
 
 #[cfg(feature = "wasm")]

@@ -16,10 +16,10 @@ use wasmtime::{
 use super::layout::{FRAME_BYTES, Fault, PARAMETER_BYTES, PLUGIN_BYTES, describe};
 use super::limits::damaged;
 use crate::diagnostic::{Diagnostic, Result, printable};
-use crate::filter::catalogue::{Entry, Form};
-use crate::filter::described::Described;
-use crate::filter::running::{Running, check_frames, failed, refused};
-use crate::filter::trust::sha256;
+use crate::filter::described::{Described, check_frames};
+use crate::filter::digest::sha256;
+use crate::filter::entry::{Entry, Form};
+use crate::filter::running::{Running, failed, refused};
 
 const MEMORY_BYTES: usize = 64 << 20;
 const TABLE_ELEMENTS: usize = 10_000;

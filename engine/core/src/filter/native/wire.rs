@@ -7,7 +7,7 @@ use std::io::{Error, ErrorKind, Read, Result, Write};
 
 use filter_api::{Format, Frame, FrameMut};
 
-use super::native::{Failure, Loaded, Native};
+use super::loaded::Failure;
 
 /// The longest payload: a colour frame of 50 megapixels.
 const LONGEST_PAYLOAD_BYTES: usize = 150_000_000;
@@ -87,9 +87,17 @@ pub(super) fn read_reply(from: &mut impl Read) -> Result<Reply> {
     })
 }
 
-/// Answers requests until the host closes the channel.
-pub(super) fn serve(from: &mut impl Read, to: &mut impl Write, plugin: Loaded) -> Result<()> {
-    let mut instance: Option<Native> = None;
+/// What a filter did with a call.
+type Outcome<T> = std::result::Result<T, Failure>;
+
+/// Answers requests until the host closes the channel. `create` makes an instance from its values: a function that fills one
+/// frame from another of the same size.
+pub(super) fn serve<Instance: FnMut(Frame<'_>, FrameMut<'_>) -> Outcome<()>>(
+    from: &mut impl Read,
+    to: &mut impl Write,
+    create: impl Fn(&[f64]) -> Outcome<Instance>,
+) -> Result<()> {
+    let mut instance = None;
     let (mut input, mut output, mut frames) = (Vec::new(), Vec::new(), 0_u8);
     loop {
         let request = match read_array(from) {
@@ -102,16 +110,16 @@ pub(super) fn serve(from: &mut impl Read, to: &mut impl Write, plugin: Loaded) -
                 let count = read_number(from)?;
                 let values =
                     (0..count).map(|_| Ok(f64::from_le_bytes(read_array(from)?))).collect::<Result<Vec<_>>>()?;
-                Native::new(plugin, &values).map(|made| {
+                create(&values).map(|made| {
                     instance = Some(made);
                     Vec::new()
                 })
             }
-            (PROCESS, Some(native)) => {
+            (PROCESS, Some(instance)) => {
                 frames = frames.wrapping_add(1);
                 // What a filter leaves out must not look the same twice: the law says that it fills every pixel.
                 output.fill(frames);
-                process(from, native, &mut input, &mut output)?.map(|()| output.clone())
+                process(from, instance, &mut input, &mut output)?.map(|()| output.clone())
             }
             _ => return Err(Error::new(ErrorKind::InvalidData, "not a request")),
         };
@@ -126,10 +134,10 @@ pub(super) fn serve(from: &mut impl Read, to: &mut impl Write, plugin: Loaded) -
 
 fn process(
     from: &mut impl Read,
-    native: &mut Native,
+    instance: &mut impl FnMut(Frame<'_>, FrameMut<'_>) -> Outcome<()>,
     input: &mut Vec<u8>,
     output: &mut Vec<u8>,
-) -> Result<std::result::Result<(), Failure>> {
+) -> Result<Outcome<()>> {
     let invalid = |words: String| Error::new(ErrorKind::InvalidData, words);
     let (width, height) = (read_number(from)?, read_number(from)?);
     let mut format = || -> Result<Format> {
@@ -141,7 +149,7 @@ fn process(
     from.read_exact(input)?;
     let frame = Frame::new(width, height, reads, input).map_err(|error| invalid(error.0))?;
     let to = FrameMut::new(width, height, writes, output).map_err(|error| invalid(error.0))?;
-    Ok(native.process(frame, to))
+    Ok(instance(frame, to))
 }
 
 fn read_array<const N: usize>(from: &mut impl Read) -> Result<[u8; N]> {

@@ -6,12 +6,40 @@ use filter_api::abi::{ABI_VERSION, PLUGIN_SYMBOL, RawFrame, RawParameter, RawPlu
 use object::{Architecture, BinaryFormat, Object, ObjectSegment, ObjectSymbol};
 
 use crate::diagnostic::{Diagnostic, Result, printable};
+use crate::filter::digest::sha256;
+use crate::filter::trust::{self, Trust};
 
-/// Checks that a file is a whole library for this machine, and holds a filter of this version of the contract.
+/// Reads a library whose digest is allowed, and checks that it is a whole library for this machine with a filter of this
+/// version of the contract. Its bytes and its digest come back.
 ///
 /// # Errors
-/// If it is not: the likely cause, and the cure.
-pub(super) fn check(path: &Path, bytes: &[u8]) -> Result<()> {
+/// If it is not allowed: what that would mean, and the exact words that allow it. If it is no such library: the likely
+/// cause, and the cure.
+pub(super) fn read(path: &Path, trust: &Trust) -> Result<(Vec<u8>, String)> {
+    let bytes = trust::read(path)?;
+    let digest = sha256(&bytes);
+    if !trust.allows(&digest) {
+        return Err(denied(path, trust, &digest));
+    }
+    check(path, &bytes)?;
+    Ok((bytes, digest))
+}
+
+fn denied(path: &Path, trust: &Trust, digest: &str) -> Box<Diagnostic> {
+    let shown = printable(&path.display().to_string());
+    let (code, message) = if trust.is_empty() {
+        ("E-NATIVE-DENIED", format!("'{shown}' is a native library and was not loaded"))
+    } else {
+        ("E-NATIVE-DENIED", format!("'{shown}' is not one of the native libraries that are allowed"))
+    };
+    let help = format!(
+        "a native filter can do all that you can do: read, change and send your files. If you trust it: \
+         --allow-native=sha256:{digest}"
+    );
+    Box::new(Diagnostic::new(code, message).help(help))
+}
+
+fn check(path: &Path, bytes: &[u8]) -> Result<()> {
     fault(bytes).map_or(Ok(()), |(what, help)| {
         let message = format!("'{}' {what}", printable(&path.display().to_string()));
         Diagnostic::new("E-NATIVE-ABI", message).help(help).fail()
@@ -81,6 +109,27 @@ fn wrong_version(head: &[u8], symbol_bytes: u64) -> Option<(String, String)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnostic::Kind;
+
+    #[test]
+    fn a_library_is_read_only_if_its_digest_is_allowed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("ink.so");
+        std::fs::write(&path, "abc").unwrap();
+        // SHA-256 of "abc", FIPS 180-2 appendix B.1.
+        let digest = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+        let mut trust = Trust::default();
+        let error = read(&path, &trust).err().unwrap();
+        assert_eq!((error.code, error.kind()), ("E-NATIVE-DENIED", Kind::Trust));
+        assert!(error.help.unwrap().ends_with(&format!("--allow-native=sha256:{digest}")));
+        let file = folder.path().join("trust.toml");
+        std::fs::write(&file, format!("native = [\"sha256:{digest}\"]\n")).unwrap();
+        trust.allow_file(&file).unwrap();
+        // Allowed, and now seen to be no library.
+        assert_eq!(read(&path, &trust).err().unwrap().code, "E-NATIVE-ABI");
+        std::fs::write(&path, "abd").unwrap();
+        assert_eq!(read(&path, &trust).err().unwrap().code, "E-NATIVE-DIGEST");
+    }
 
     #[test]
     fn a_text_is_not_a_library() {

@@ -10,13 +10,13 @@ use std::time::Duration;
 
 use filter_api::{Descriptor, Frame, FrameMut};
 
-use super::catalogue::{Entry, Form};
-use super::described::Described;
-use super::running::{Running, check_frames, failed, refused};
-use super::trust::Trust;
-use super::wire::{Reply, Request, read_reply, write_request};
-use super::{library, native};
+use super::wire::{self, Reply, Request, read_reply, write_reply, write_request};
+use super::{library, loaded};
 use crate::diagnostic::{Diagnostic, Result, printable};
+use crate::filter::described::{Described, check_frames};
+use crate::filter::entry::{Entry, Form};
+use crate::filter::running::{Running, failed, refused};
+use crate::filter::trust::Trust;
 
 /// How long a library may take to load, or to create an instance.
 const START: Duration = Duration::from_secs(5);
@@ -28,8 +28,7 @@ const FRAME: Duration = Duration::from_secs(2);
 /// # Errors
 /// If it is not allowed, is not a filter, or ends or stalls the worker while it is loaded.
 pub(super) fn open(path: &Path, trust: &Trust, program: &Path) -> Result<Entry> {
-    let (bytes, sha256) = trust.read(path)?;
-    library::check(path, &bytes)?;
+    let (_, sha256) = library::read(path, trust)?;
     let launch = Launch { program: program.to_owned(), path: path.to_owned(), sha256: sha256.clone() };
     let (worker, described) = launch.start()?;
     drop(worker);
@@ -202,20 +201,23 @@ impl Drop for Worker {
 pub fn serve(path: &Path, trust: &Trust) -> Result<()> {
     let lost = |error| Box::new(Diagnostic::disk("answer to", Path::new("the host"), &error));
     let mut output = replies_apart_from_prints().map_err(lost)?;
-    let (bytes, _) = trust.read(path)?;
-    library::check(path, &bytes)?;
-    let loaded = native::load(path, &bytes).and_then(|plugin| Ok((plugin, native::describe(plugin, path)?)));
-    let (plugin, described) = match loaded {
+    let (bytes, _) = library::read(path, trust)?;
+    let described = loaded::load(path, &bytes).and_then(|plugin| Ok((plugin, loaded::describe(plugin, path)?)));
+    let (plugin, described) = match described {
         Ok(loaded) => loaded,
         Err(error) => {
             let words = format!("{}\n{}", error.message, error.help.as_deref().unwrap_or_default());
-            super::wire::write_reply(&mut output, &Reply::Failed(words)).map_err(lost)?;
+            write_reply(&mut output, &Reply::Failed(words)).map_err(lost)?;
             return Err(error);
         }
     };
     let words = serde_json::to_vec(&described).unwrap_or_default();
-    super::wire::write_reply(&mut output, &Reply::Done(words)).map_err(lost)?;
-    super::wire::serve(&mut std::io::stdin().lock(), &mut output, plugin).map_err(lost)
+    write_reply(&mut output, &Reply::Done(words)).map_err(lost)?;
+    let create = |values: &[f64]| {
+        let mut native = loaded::Native::new(plugin, values)?;
+        Ok(move |input: Frame<'_>, to: FrameMut<'_>| native.process(input, to))
+    };
+    wire::serve(&mut std::io::stdin().lock(), &mut output, create).map_err(lost)
 }
 
 /// The channel for replies, taken away from standard output: what a filter prints there must not be taken for a reply.

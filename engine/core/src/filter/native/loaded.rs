@@ -14,20 +14,19 @@ use filter_api::abi::{
 use filter_api::{Descriptor, Format, Frame, FrameMut};
 use libloading::Library;
 
-use super::catalogue::{Entry, Form};
-use super::described::{Described, DescribedParameter, LONGEST_TEXT_BYTES, MOST_PARAMETERS};
 use super::library;
-use super::running::{Running, check_frames, failed, refused};
-use super::trust::Trust;
 use crate::diagnostic::{Diagnostic, Result, printable};
+use crate::filter::described::{Described, DescribedParameter, LONGEST_TEXT_BYTES, MOST_PARAMETERS, check_frames};
+use crate::filter::entry::{Entry, Form};
+use crate::filter::running::{Running, failed, refused};
+use crate::filter::trust::Trust;
 
 /// Loads a library that the user allowed.
 ///
 /// # Errors
 /// If it is not allowed, is no library for this machine and this version of the contract, or describes itself wrongly.
 pub(super) fn open(path: &Path, trust: &Trust) -> Result<Entry> {
-    let (bytes, sha256) = trust.read(path)?;
-    library::check(path, &bytes)?;
+    let (bytes, sha256) = library::read(path, trust)?;
     let plugin = load(path, &bytes)?;
     let descriptor = describe(plugin, path)?.check("E-NATIVE-ABI", path)?;
     let name = descriptor.name;
@@ -69,7 +68,7 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded> {
     let library = unsafe { Library::new(&copy) }.map_err(|error| wrong(&error))?;
     // Never unloaded: threads, statics and destructors of a library outlive its last filter.
     let library: &'static Library = Box::leak(Box::new(library));
-    // SAFETY: `library::check` found a symbol of this name, of the size and version of a `RawPlugin`.
+    // SAFETY: `library::read` found a symbol of this name, of the size and version of a `RawPlugin`.
     let symbol = unsafe { library.get::<*const RawPlugin>(PLUGIN_SYMBOL.as_bytes()) }.map_err(|error| wrong(&error))?;
     // SAFETY: as above; the static is constant and never unloaded.
     Ok(Loaded(unsafe { &**symbol }))
