@@ -3,7 +3,6 @@
 //! [`Layout`] is a world file, read once; [`World`] is the state of one robot in it. Sensors look at it through
 //! [`World::layout`], [`World::moving`] and [`World::body`]; rewards and states never do.
 
-mod cast;
 mod drive;
 mod footprint;
 mod layout;
@@ -16,7 +15,6 @@ mod terrain;
 #[cfg(test)]
 mod tests;
 
-pub use cast::RayHit;
 pub use footprint::{HALF_LENGTH_M, HALF_WIDTH_M, HEIGHT_M, STEP_M};
 pub use layout::Layout;
 pub use mover::Mover;

@@ -121,8 +121,19 @@ impl Terrain {
             let (x, y) = (x * HALF_LENGTH_M, y * HALF_WIDTH_M);
             let (world_x, world_y) = body.world(x, y);
             let plane = body.plane_m(x, y);
-            plane - scene.ground_m(world_x, world_y, plane + STEP_M) <= STEP_M
+            plane - self.ground_m(scene, world_x, world_y, plane + STEP_M) <= STEP_M
         })
+    }
+
+    /// The highest ground at a place of the floor plan that is not above `below_z_m`; the floor, 0, where there is none.
+    pub(super) fn ground_m(&self, scene: &Scene, x_m: f64, y_m: f64, below_z_m: f64) -> f64 {
+        let mut ground = 0.0_f64;
+        Self::visit_near(scene, Pose::new(x_m, y_m, 0.0), 0.0, |index| {
+            if let Some(top) = self.obstacle(index).top_at(x_m, y_m).filter(|top| *top <= below_z_m) {
+                ground = ground.max(top);
+            }
+        });
+        ground
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::diagnostic::SourceText;
-use crate::geometry::{Point3, Vector3};
+use crate::geometry::Point3;
 use std::f64::consts::FRAC_PI_2;
 
 const EXACT: RobotSettings = RobotSettings { lag_s: 0.0, speed_noise: 0.0, slip: 0.0, tick_s: 0.05 };
@@ -178,25 +178,13 @@ fn whatever_is_commanded_the_body_never_ends_inside_a_solid_or_in_the_air() {
 }
 
 #[test]
-fn a_ray_meets_the_same_distances_as_a_ruler() {
-    let scene = &layout(
-        "[[wall]]\npoints_m = [[2.05, -3], [2.05, 3]]\n[[cylinder]]\ncentre_m = [0, 2]\nradius_m = 0.5\nheight_m = 1\n\
-         [[ramp]]\ncentre_m = [-2, 0]\nsize_m = [2, 2, 1]\nyaw_deg = 180\n[[start]]\nposition_m = [0, 0]\n",
-    )
-    .scene;
-    let cast = |z: f64, direction: Vector3| scene.cast_ray(Point3::new(0.0, 0.0, z), direction.normalize(), 100.0);
-    let ahead = cast(0.5, Vector3::x()).unwrap();
-    assert!((ahead.distance_m - 2.0).abs() < 1e-5 && (ahead.normal + Vector3::x()).norm() < 1e-6);
-    assert_eq!(ahead.solid, Some(0));
-    assert!((cast(0.5, Vector3::y()).unwrap().distance_m - 1.5).abs() < 1e-3);
-    // The ramp rises away from the origin, from x = -1 to x = -3.
-    let slope = cast(0.5, -Vector3::x()).unwrap();
-    assert!((slope.distance_m - 2.0).abs() < 1e-4, "{slope:?}");
-    let down = cast(0.5, Vector3::new(1.0, 0.0, -1.0)).unwrap();
-    assert!(down.solid.is_none() && (down.distance_m - 0.5 * std::f64::consts::SQRT_2).abs() < 1e-12);
-    assert_eq!(cast(2.0, Vector3::x()), None);
-    assert!((scene.ground_m(-2.5, 0.0, 9.0) - 0.75).abs() < 1e-12);
-    assert_eq!(scene.ground_m(-2.5, 0.0, 0.5), 0.0);
+fn the_ground_is_the_highest_top_that_is_not_above_a_limit() {
+    // The ramp rises from x = -1 to x = -3.
+    let ramp = "[[ramp]]\ncentre_m = [-2, 0]\nsize_m = [2, 2, 1]\nyaw_deg = 180\n";
+    let layout = layout(&format!("{ramp}{START}"));
+    let ground_m = |below_z_m| layout.terrain().ground_m(&layout.scene, -2.5, 0.0, below_z_m);
+    assert!((ground_m(9.0) - 0.75).abs() < 1e-12);
+    assert_eq!(ground_m(0.5), 0.0);
 }
 
 #[test]
