@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::geometry::{Point2, Pose, wrap_angle};
-use crate::world::{Progress, World};
+use crate::world::{RouteProgress, World};
 
 /// Seconds over which spinning, standing and circling are judged.
 const SPELL_S: f64 = 20.0;
@@ -15,7 +15,7 @@ const STANDING_M: f64 = 0.2;
 /// Follows the true pose through a test.
 #[derive(Debug, Clone)]
 pub struct Truth {
-    progress: Option<Progress>,
+    progress: Option<RouteProgress>,
     last: Pose,
     /// Length of the path, metres.
     pub distance_m: f64,
@@ -57,7 +57,7 @@ impl Truth {
     pub fn new(world: &World, period_s: f64, steps: u64) -> Self {
         let pose = world.body().pose;
         let layout = world.layout();
-        let progress = layout.lap.map(|lap| Progress::new(&layout.routes[lap], Point2::new(pose.x_m, pose.y_m)));
+        let progress = layout.lap.map(|lap| RouteProgress::new(&layout.routes[lap], Point2::new(pose.x_m, pose.y_m)));
         let prey_m = Vec::with_capacity(if world.prey().is_some() { steps as usize } else { 0 });
         let spell_steps = (SPELL_S / period_s).round().max(1.0) as u64;
         let spell = Spell::new(pose, 0.0);
@@ -99,7 +99,7 @@ impl Truth {
     /// Signed progress along the lap route, metres; `None` in a world without one.
     #[must_use]
     pub fn net_m(&self) -> Option<f64> {
-        self.progress.as_ref().map(Progress::net_m)
+        self.progress.as_ref().map(RouteProgress::net_m)
     }
 
     fn end_spell(&mut self) {

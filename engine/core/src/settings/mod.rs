@@ -6,7 +6,7 @@
 mod table;
 
 use crate::geometry::Twist;
-pub use table::{SETTINGS, Setting, SettingError, Shape, Value, apply};
+pub use table::{SETTINGS, Setting, SettingError, SettingShape, Value, apply};
 
 /// Everything that a run needs besides its seed.
 #[derive(Debug, Clone, PartialEq)]

@@ -164,7 +164,7 @@ impl Obstacle {
     /// and its high end; on the slope itself plane and ramp agree.
     fn ramp_touches(&self, body: &Stance, half_x: f64, half_y: f64) -> bool {
         let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
-        let mut shared = Polygon { points: [(0.0, 0.0); 8], count: 4 };
+        let mut shared = SharedPolygon { points: [(0.0, 0.0); 8], count: 4 };
         for (point, (x, y)) in shared.points.iter_mut().zip(corners) {
             let (x, y) = body.world(x * HALF_LENGTH_M, y * HALF_WIDTH_M);
             *point = self.local(x, y);
@@ -193,12 +193,12 @@ impl Obstacle {
 }
 
 /// A convex polygon of at most eight corners: two rectangles share no more.
-struct Polygon {
+struct SharedPolygon {
     points: [(f64, f64); 8],
     count: usize,
 }
 
-impl Polygon {
+impl SharedPolygon {
     /// Keeps the part where the linear function `inside` is not negative (Sutherland and Hodgman 1974).
     fn cut(&mut self, inside: impl Fn((f64, f64)) -> f64) {
         let (old, count) = (self.points, self.count);

@@ -3,33 +3,33 @@
 //! [`Layout`] is a world file, read once; [`World`] is the state of one robot in it. Sensors look at it through
 //! [`World::layout`], [`World::moving`] and [`World::body`]; rewards and states never do.
 
-mod drive;
+mod drivetrain;
 mod footprint;
 mod layout;
 mod mover;
-mod progress;
-mod robot;
 mod route;
+mod route_progress;
 pub mod scene;
 mod terrain;
 #[cfg(test)]
 mod tests;
+mod vehicle;
 
 pub use footprint::{HALF_LENGTH_M, HALF_WIDTH_M, HEIGHT_M, STEP_M};
 pub use layout::Layout;
 pub use mover::Mover;
-pub use progress::Progress;
 pub use route::Route;
+pub use route_progress::RouteProgress;
 
 use crate::geometry::{Isometry3, Pose, Twist, rotation};
 use crate::settings::RobotSettings;
-use drive::Drive;
+use drivetrain::Drivetrain;
 use footprint::Stance;
 use mover::Traffic;
 use nalgebra::{Translation3, UnitQuaternion};
-use robot::Robot;
 use scene::Solid;
 use std::sync::Arc;
+use vehicle::Vehicle;
 
 /// Where the robot's body is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,7 +68,7 @@ pub struct Motion {
 #[derive(Debug, Clone)]
 pub struct World {
     layout: Arc<Layout>,
-    robot: Robot,
+    robot: Vehicle,
     traffic: Traffic,
     period_s: f64,
     periods: u64,
@@ -80,9 +80,9 @@ impl World {
     #[must_use]
     pub fn new(layout: Arc<Layout>, robot: &RobotSettings, period_s: f64, seed: u64) -> Self {
         let start = layout.starts.first().copied().unwrap_or_default();
-        let drive = Drive::new(robot, period_s, seed);
+        let drive = Drivetrain::new(robot, period_s, seed);
         let traffic = Traffic::new(&layout.movers, &layout.routes);
-        Self { robot: Robot::new(drive, &layout, start), traffic, period_s, periods: 0, mover_speed: 1.0, layout }
+        Self { robot: Vehicle::new(drive, &layout, start), traffic, period_s, periods: 0, mover_speed: 1.0, layout }
     }
 
     /// The same world with every mover `speed` times as fast as its file says.

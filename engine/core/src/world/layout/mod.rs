@@ -62,7 +62,9 @@ impl Layout {
     /// # Errors
     /// `E-WORLD-SYNTAX`, `-KEY`, `-VALUE`, `-NAME`, `-START`: each at the place in the file.
     pub fn parse(source: SourceText) -> Result<Self> {
-        build::layout(source)
+        let built = build::build(source)?;
+        starts::check_starts(&built)?;
+        Ok(built.layout)
     }
 
     /// Reads a world file.

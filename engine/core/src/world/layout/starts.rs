@@ -1,8 +1,8 @@
 //! Whether the robot can stand on every start of a world.
 
-use super::build::Origin;
-use super::reader::Row;
-use super::{Layout, Obstruction};
+use super::Obstruction;
+use super::build::Built;
+use super::reader::FileRow;
 use crate::diagnostic::{Diagnostic, Mistakes, Result, printable};
 use crate::geometry::Pose;
 use crate::world::footprint::Obstacle;
@@ -11,15 +11,15 @@ use crate::world::footprint::Obstacle;
 ///
 /// # Errors
 /// `E-WORLD-START` for each that is not.
-pub(super) fn check(layout: &Layout, file: &Row, origins: &[Origin]) -> Result<()> {
-    let mut mistakes = Mistakes::new(&layout.source);
-    for (row, &start) in file.rows("start").iter().zip(&layout.starts) {
-        mistakes.take(check_one(layout, row, start, origins));
+pub(super) fn check_starts(world: &Built) -> Result<()> {
+    let mut mistakes = Mistakes::new(&world.layout.source);
+    for (row, &start) in world.file.rows("start").iter().zip(&world.layout.starts) {
+        mistakes.take(check_start(world, row, start));
     }
     mistakes.end()
 }
 
-fn check_one(layout: &Layout, row: &Row, start: Pose, origins: &[Origin]) -> Result<()> {
+fn check_start(Built { layout, origins, .. }: &Built, row: &FileRow, start: Pose) -> Result<()> {
     let source = &layout.source;
     let at = |message: String, label: String| {
         Diagnostic::new("E-WORLD-START", message).at(source, row.span_of("position_m"), label)

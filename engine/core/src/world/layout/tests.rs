@@ -1,6 +1,6 @@
 //! Every mistake in a world file is told at its place, with what to write instead.
 
-use super::schema::{FILE, Form, Key};
+use super::schema::{FILE, FileKey, KeyForm};
 use super::*;
 use crate::diagnostic::Kind;
 use crate::world::scene::{Shape, Texture};
@@ -241,10 +241,10 @@ fn a_file_that_cannot_be_read_says_why() {
 
 #[test]
 fn the_manual_names_every_key() {
-    fn names(keys: &'static [Key], found: &mut Vec<&'static str>) {
+    fn names(keys: &'static [FileKey], found: &mut Vec<&'static str>) {
         for key in keys {
             found.push(key.name);
-            if let Form::Table(keys) | Form::Tables(keys, _) = key.form {
+            if let KeyForm::Table(keys) | KeyForm::Tables(keys, _) = key.form {
                 names(keys, found);
             }
         }

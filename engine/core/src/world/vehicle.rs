@@ -1,7 +1,7 @@
 //! The robot's body: it drives, stops at what it touches, climbs, and falls.
 
 use super::Motion;
-use super::drive::Drive;
+use super::drivetrain::Drivetrain;
 use super::footprint::{RADIUS_M, Stance};
 use super::layout::Layout;
 use super::mover::Traffic;
@@ -10,8 +10,8 @@ use crate::geometry::{Pose, Twist};
 
 /// The body and its drive.
 #[derive(Debug, Clone)]
-pub(super) struct Robot {
-    drive: Drive,
+pub(super) struct Vehicle {
+    drive: Drivetrain,
     stance: Stance,
     fallen: bool,
     /// Solids that can be reached in the present period.
@@ -48,8 +48,8 @@ impl Obstacles<'_> {
     }
 }
 
-impl Robot {
-    pub(super) fn new(drive: Drive, layout: &Layout, pose: Pose) -> Self {
+impl Vehicle {
+    pub(super) fn new(drive: Drivetrain, layout: &Layout, pose: Pose) -> Self {
         let stance = layout.terrain().put(&layout.scene, pose).stance;
         Self { drive, stance, fallen: false, near: Vec::with_capacity(64), blocking: Vec::with_capacity(64) }
     }
@@ -125,7 +125,7 @@ impl Robot {
 
 /// Gives every tick's twist to `go`, which returns the share of the tick that was driven, or nothing to end the period
 /// there. A tick cut short stops the wheels. Returns the wheels' mean speed.
-fn drive_through(drive: &mut Drive, command: Twist, mut go: impl FnMut(Twist, f64) -> Option<f64>) -> Twist {
+fn drive_through(drive: &mut Drivetrain, command: Twist, mut go: impl FnMut(Twist, f64) -> Option<f64>) -> Twist {
     let (tick_s, share) = (drive.tick_s, 1.0 / f64::from(drive.ticks));
     let mut mean = Twist::default();
     for _ in 0..drive.ticks {
