@@ -82,9 +82,13 @@ impl Drivetrain {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::settings::BodyShape;
+
+    const EXACT: RobotSettings =
+        RobotSettings { body: BodyShape::pioneer2at(), lag_s: 0.0, speed_noise: 0.0, slip: 0.0, tick_s: 0.05 };
 
     fn distance(tick_s: f64) -> f64 {
-        let robot = RobotSettings { lag_s: 0.15, speed_noise: 0.0, slip: 0.0, tick_s };
+        let robot = RobotSettings { lag_s: 0.15, tick_s, ..EXACT };
         let mut drive = Drivetrain::new(&robot, 0.5, 1);
         drive.begin();
         (0..drive.ticks).map(|_| drive.tick(Twist::new(0.4, 0.0)).linear_m_per_s * drive.tick_s).sum()
@@ -101,15 +105,14 @@ mod tests {
 
     #[test]
     fn half_a_second_has_ten_ticks_of_fifty_milliseconds() {
-        let robot = RobotSettings { lag_s: 0.0, speed_noise: 0.0, slip: 0.0, tick_s: 0.05 };
-        let drive = Drivetrain::new(&robot, 0.5, 1);
+        let drive = Drivetrain::new(&EXACT, 0.5, 1);
         assert_eq!((drive.ticks, drive.tick_s), (10, 0.05));
-        assert_eq!(Drivetrain::new(&robot, 0.33, 1).ticks, 7);
+        assert_eq!(Drivetrain::new(&EXACT, 0.33, 1).ticks, 7);
     }
 
     #[test]
     fn slip_takes_a_share_of_the_turn_only() {
-        let robot = RobotSettings { lag_s: 0.0, speed_noise: 0.0, slip: 0.25, tick_s: 0.05 };
+        let robot = RobotSettings { slip: 0.25, ..EXACT };
         let mut drive = Drivetrain::new(&robot, 0.5, 1);
         drive.begin();
         let wheels = drive.tick(Twist::new(0.2, 0.8));

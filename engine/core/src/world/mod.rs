@@ -3,19 +3,20 @@
 //! [`Layout`] is a world file, read once; [`World`] is the state of one robot in it. Sensors look at it through
 //! [`World::layout`], [`World::moving`] and [`World::body`]; rewards and states never do.
 
+mod contact;
 mod drivetrain;
-mod footprint;
 mod layout;
 mod mover;
+mod obstacle;
 mod route;
 mod route_progress;
 pub mod scene;
+mod stance;
 mod terrain;
 #[cfg(test)]
 mod tests;
 mod vehicle;
 
-pub use footprint::{HALF_LENGTH_M, HALF_WIDTH_M, HEIGHT_M, STEP_M};
 pub use layout::Layout;
 pub use mover::Mover;
 pub use route::Route;
@@ -24,10 +25,10 @@ pub use route_progress::RouteProgress;
 use crate::geometry::{Isometry3, Pose, Twist, rotation};
 use crate::settings::RobotSettings;
 use drivetrain::Drivetrain;
-use footprint::Stance;
 use mover::Traffic;
 use nalgebra::{Translation3, UnitQuaternion};
 use scene::Solid;
+use stance::Stance;
 use std::sync::Arc;
 use vehicle::Vehicle;
 
@@ -82,7 +83,14 @@ impl World {
         let start = layout.starts.first().copied().unwrap_or_default();
         let drive = Drivetrain::new(robot, period_s, seed);
         let traffic = Traffic::new(&layout.movers, &layout.routes);
-        Self { robot: Vehicle::new(drive, &layout, start), traffic, period_s, periods: 0, mover_speed: 1.0, layout }
+        Self {
+            robot: Vehicle::new(robot.body, drive, &layout, start),
+            traffic,
+            period_s,
+            periods: 0,
+            mover_speed: 1.0,
+            layout,
+        }
     }
 
     /// The same world with every mover `speed` times as fast as its file says.
@@ -103,7 +111,7 @@ impl World {
         self.periods += 1;
         if !self.traffic.is_empty() {
             self.traffic.arrange(&self.layout.movers, &self.layout.routes, self.mover_time_s());
-            motion.contact |= self.traffic.touches(self.robot.stance());
+            motion.contact |= self.traffic.touches(self.robot.shape(), self.robot.stance());
         }
         motion
     }
@@ -153,8 +161,9 @@ impl World {
     /// Whether a robot could be placed at `pose`: nothing touches it, and all of its footprint has ground below.
     #[must_use]
     pub fn is_safe(&self, pose: Pose) -> bool {
-        let stance = self.layout.terrain().put(&self.layout.scene, pose).stance;
-        self.layout.obstruction(pose).is_none() && !self.traffic.touches(&stance)
+        let shape = self.robot.shape();
+        let stance = self.layout.terrain().put(&self.layout.scene, shape, pose).stance;
+        self.layout.obstruction(shape, pose).is_none() && !self.traffic.touches(shape, &stance)
     }
 
     /// What the world was made from.
