@@ -3,6 +3,7 @@ use std::sync::Arc;
 
 use engine::experiment::{Overrides, Plan};
 use engine::script::Behaviour;
+use engine::settings::BodyShape;
 use engine::world::Layout;
 
 use crate::support::root;
@@ -18,7 +19,7 @@ fn files(folder: &str, ending: &str) -> Vec<PathBuf> {
 #[test]
 fn every_world_that_ships_loads() {
     for path in files("worlds", "toml") {
-        if let Err(error) = Layout::load(&path) {
+        if let Err(error) = Layout::load(&path, &BodyShape::pioneer2at()) {
             panic!("{}", error.render(false));
         }
     }

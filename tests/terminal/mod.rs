@@ -34,8 +34,8 @@ fn learn(board: &Board, number: u64, script: &str, world: &str, tests: bool) {
 
 fn plan(script: &str, world: &str) -> Plan {
     let behaviour = Behaviour::parse("short", SourceText::new("short.rhai", script)).unwrap();
-    let (settings, layout) =
-        (behaviour.settings().clone(), Layout::parse(SourceText::new("small.toml", world)).unwrap());
+    let settings = behaviour.settings().clone();
+    let layout = Layout::parse(SourceText::new("small.toml", world), &settings.robot.body).unwrap();
     let filters = Arc::new(engine::filter::Catalogue::linked_in());
     let plan = Plan::with_layout(Arc::new(behaviour), settings, Arc::new(layout), filters).unwrap();
     plan.with_changes(&Overrides::default()).unwrap()

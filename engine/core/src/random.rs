@@ -4,8 +4,8 @@
 //! draws of another. Numbers are derived from raw 32- and 64-bit words here, never by a library's distribution, so that
 //! they stay the same across library versions.
 
+use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::sync::LazyLock;
 
 /// Who draws random numbers.

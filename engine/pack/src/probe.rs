@@ -29,8 +29,8 @@ const WORLD: &str = include_str!("../../../worlds/room-textured.toml");
 /// Never in practice: only if the built-in run fails.
 pub fn fingerprint() -> Result<Digest> {
     let behaviour = Arc::new(Behaviour::parse("probe", SourceText::new("probe.rhai", SCRIPT))?);
-    let layout = Arc::new(Layout::parse(SourceText::new("probe.toml", WORLD))?);
     let settings = behaviour.settings().clone();
+    let layout = Arc::new(Layout::parse(SourceText::new("probe.toml", WORLD), &settings.robot.body)?);
     let plan = Plan::with_layout(behaviour, settings, layout, Arc::new(Catalogue::linked_in()))?;
     let never = AtomicBool::new(false);
     let learned = learn(&plan, 1, &never, &|_| ())?;

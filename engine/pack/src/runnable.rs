@@ -50,8 +50,8 @@ impl Pack {
         let script = manifest.entry.script.as_str();
         let stem = script.rsplit('/').next().and_then(|file| file.strip_suffix(".rhai")).unwrap_or(script);
         let behaviour = Arc::new(Behaviour::parse(stem, self.text(script)?)?);
-        let layout = Arc::new(Layout::parse(self.world(&behaviour, depends)?)?);
         let settings = behaviour.settings().clone();
+        let layout = Arc::new(Layout::parse(self.world(&behaviour, depends)?, &settings.robot.body)?);
         let unpacked = self.unpack_filters(depends)?;
         sources.folders.extend(unpacked.iter().map(|folder| folder.path().to_owned()));
         let filters = Arc::new(Catalogue::new(sources)?);

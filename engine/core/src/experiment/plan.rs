@@ -97,7 +97,7 @@ impl Plan {
         } else {
             let place = if overrides.world.is_some() { None } else { behaviour.place_of("world") };
             let path = find_world(&behaviour, &settings.world, place);
-            mistakes.take(path.and_then(|path| Layout::load(&path)))
+            mistakes.take(path.and_then(|path| Layout::load(&path, &settings.robot.body)))
         };
         Self::checked(behaviour, settings, layout.map(Arc::new), filters, unread, mistakes)
     }
@@ -109,7 +109,7 @@ impl Plan {
     pub fn with_changes(self, overrides: &Overrides) -> Result<Self> {
         let settings = changed(&self.settings, overrides)?;
         let layout = match &overrides.world {
-            Some(world) => Arc::new(Layout::load(&find_world(&self.behaviour, world, None)?)?),
+            Some(world) => Arc::new(Layout::load(&find_world(&self.behaviour, world, None)?, &settings.robot.body)?),
             None => self.layout,
         };
         let plan = Self::with_layout(self.behaviour, settings, layout, self.filters)?;
@@ -147,7 +147,8 @@ impl Plan {
         };
         let plan = Self { behaviour, settings, layout, members: Vec::new(), filters, earlier: Vec::new() };
         if !unread.any_of("laser") {
-            plan.behaviour.find_unreachable(&plan.settings.laser, plan.layout.level_height_m(), &mut mistakes);
+            let height_m = plan.layout.level_height_m(&plan.settings.robot.body);
+            plan.behaviour.find_unreachable(&plan.settings.laser, height_m, &mut mistakes);
         }
         let robot = ["camera", "laser", "movers", "recovery", "robot", "run"];
         if !robot.iter().any(|call| unread.any_of(call))

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::{Cycle, Observer, Step};
 use crate::geometry::{Point2, Pose, wrap_angle};
 use crate::robot::Robot;
-use crate::world::{Layout, Progress};
+use crate::world::{Layout, RouteProgress};
 
 /// Seconds over which spinning, standing and circling are judged.
 const SPELL_S: f64 = 20.0;
@@ -20,7 +20,7 @@ const STANDING_M: f64 = 0.2;
 #[derive(Debug, Clone)]
 pub struct Truth {
     layout: Arc<Layout>,
-    progress: Option<Progress>,
+    progress: Option<RouteProgress>,
     last: Pose,
     /// Length of the path, metres.
     pub distance_m: f64,
@@ -61,7 +61,7 @@ impl Truth {
     #[must_use]
     pub fn new(robot: &impl Robot, layout: &Arc<Layout>, period_s: f64, steps: u64) -> Option<Self> {
         let pose = robot.whereabouts()?.pose;
-        let progress = layout.lap.map(|lap| Progress::new(&layout.routes[lap], Point2::new(pose.x_m, pose.y_m)));
+        let progress = layout.lap.map(|lap| RouteProgress::new(&layout.routes[lap], Point2::new(pose.x_m, pose.y_m)));
         let prey_m = Vec::with_capacity(if robot.prey().is_some() { steps as usize } else { 0 });
         let spell_steps = (SPELL_S / period_s).round().max(1.0) as u64;
         Some(Self {
@@ -106,7 +106,7 @@ impl Truth {
     /// Signed progress along the lap route, metres; `None` in a world without one.
     #[must_use]
     pub fn net_m(&self) -> Option<f64> {
-        self.progress.as_ref().map(Progress::net_m)
+        self.progress.as_ref().map(RouteProgress::net_m)
     }
 
     fn end_spell(&mut self) {

@@ -1,7 +1,7 @@
 //! Where something stands on the floor, and how it moves.
 
-use super::{Isometry3, Rotation3};
-use nalgebra::{Matrix3, Translation3, UnitQuaternion};
+use super::Rotation3;
+use nalgebra::Matrix3;
 use std::f64::consts::{PI, TAU};
 
 /// A place and heading on the floor plan.
@@ -39,13 +39,6 @@ impl Pose {
     pub fn distance_m(self, other: Self) -> f64 {
         let (x, y) = (self.x_m - other.x_m, self.y_m - other.y_m);
         (x * x + y * y).sqrt()
-    }
-
-    /// The rigid transform from this pose's own axes to the world's, at height `z_m`.
-    #[must_use]
-    pub fn world_from_local(self, z_m: f64) -> Isometry3 {
-        let rotation = UnitQuaternion::from_rotation_matrix(&rotation(self.yaw_rad, 0.0, 0.0));
-        Isometry3::from_parts(Translation3::new(self.x_m, self.y_m, z_m), rotation)
     }
 }
 

@@ -148,8 +148,9 @@ mod tests {
                          boxes = [{ centre_m = [0, 0, 0.3], size_m = [0.4, 0.4, 0.4] }]\n";
 
     fn world(text: &str) -> World {
-        let layout = Layout::parse(SourceText::new("test.toml", text)).unwrap_or_else(|error| panic!("{error:?}"));
-        World::new(Arc::new(layout), &Settings::default().robot, 0.5, 1)
+        let robot = Settings::default().robot;
+        let layout = Layout::parse(SourceText::new("test.toml", text), &robot.body);
+        World::new(Arc::new(layout.unwrap_or_else(|error| panic!("{error:?}"))), &robot, 0.5, 1)
     }
 
     fn exact(to: RecoverTo) -> Recovery {

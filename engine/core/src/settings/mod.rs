@@ -3,11 +3,13 @@
 //! Nothing here opens a file or knows a script. [`SETTINGS`] is the one list of settings: the set-up calls of scripts,
 //! `--set`, `run.toml`, range checks and the reference page all read it.
 
+mod body;
 mod table;
 mod words;
 
 use crate::geometry::Twist;
-pub use table::{SETTINGS, Setting, SettingError, Shape, Value, apply};
+pub use body::{BodyShape, Footprint};
+pub use table::{SETTINGS, Setting, SettingError, SettingShape, Value, apply};
 pub use words::{CombineWay, LearnerKind, Lens, RecoverTo};
 
 /// Everything that a run needs besides its seed.
@@ -21,7 +23,7 @@ pub struct Settings {
     pub actions: Vec<Twist>,
     /// Length and rhythm of a run.
     pub run: RunSettings,
-    /// The robot's motion.
+    /// The robot's body and motion.
     pub robot: RobotSettings,
     /// The camera and its mount.
     pub camera: CameraSettings,
@@ -68,10 +70,12 @@ pub struct RunSettings {
     pub period_s: f64,
 }
 
-/// The robot's motion.
-#[derive(Debug, Clone, PartialEq)]
-#[allow(missing_docs, reason = "every field is documented in the table of settings")]
+/// A robot's body and motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs, reason = "every field but the body is documented in the table of settings")]
 pub struct RobotSettings {
+    /// Its body; no script can choose another yet.
+    pub body: BodyShape,
     pub lag_s: f64,
     pub speed_noise: f64,
     pub slip: f64,
@@ -185,7 +189,13 @@ impl Default for Settings {
             filters: Vec::new(),
             actions: PAPER_ACTIONS.iter().map(|&(linear, angular)| Twist::new(linear, angular)).collect(),
             run: RunSettings { steps: 5_200, test_steps: 5_000, period_s: 0.5 },
-            robot: RobotSettings { lag_s: 0.15, speed_noise: 0.05, slip: 0.0, tick_s: 0.05 },
+            robot: RobotSettings {
+                body: BodyShape::pioneer2at(),
+                lag_s: 0.15,
+                speed_noise: 0.05,
+                slip: 0.0,
+                tick_s: 0.05,
+            },
             // 53 cm above the robot's deck (paper, section 4.1) with the deck at 0.28 m.
             camera: CameraSettings {
                 width_px: 160,

@@ -16,7 +16,7 @@ pub enum Value {
 
 /// What a setting may be.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Shape {
+pub enum SettingShape {
     /// A number from the first to the second, both included.
     Number(f64, f64),
     /// A whole number from the first to the second, both included.
@@ -37,7 +37,7 @@ pub struct Setting {
     /// The unit, in words; empty for words and flags.
     pub unit: &'static str,
     /// What it may be.
-    pub shape: Shape,
+    pub shape: SettingShape,
     /// One sentence: what it changes.
     pub purpose: &'static str,
     /// Reads it.
@@ -129,7 +129,7 @@ macro_rules! settings {
     };
 }
 
-use Shape::{Choice, Flag, Number, Whole};
+use SettingShape::{Choice, Flag, Number, Whole};
 
 settings! {
     run.steps, "steps", Whole(1, 1_000_000_000), "How long to learn.";
@@ -193,21 +193,23 @@ impl Setting {
     pub fn allowed(&self) -> String {
         let unit = if self.unit.is_empty() { String::new() } else { format!(" ({})", self.unit) };
         match self.shape {
-            Shape::Number(min, max) => format!("{min} to {max}{unit}"),
-            Shape::Whole(min, max) => format!("a whole number from {min} to {max}{unit}"),
-            Shape::Flag => "true or false".to_owned(),
-            Shape::Choice(words) => words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(" or "),
+            SettingShape::Number(min, max) => format!("{min} to {max}{unit}"),
+            SettingShape::Whole(min, max) => format!("a whole number from {min} to {max}{unit}"),
+            SettingShape::Flag => "true or false".to_owned(),
+            SettingShape::Choice(words) => {
+                words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(" or ")
+            }
         }
     }
 
     fn accepts(&self, value: &Value) -> bool {
         match (self.shape, value) {
-            (Shape::Number(min, max), Value::Number(number)) => (min..=max).contains(number),
-            (Shape::Whole(min, max), Value::Number(number)) => {
+            (SettingShape::Number(min, max), Value::Number(number)) => (min..=max).contains(number),
+            (SettingShape::Whole(min, max), Value::Number(number)) => {
                 number.fract() == 0.0 && (min as f64..=max as f64).contains(number)
             }
-            (Shape::Flag, Value::Flag(_)) => true,
-            (Shape::Choice(words), Value::Text(text)) => words.contains(&text.as_str()),
+            (SettingShape::Flag, Value::Flag(_)) => true,
+            (SettingShape::Choice(words), Value::Text(text)) => words.contains(&text.as_str()),
             _ => false,
         }
     }

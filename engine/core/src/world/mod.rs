@@ -3,35 +3,34 @@
 //! [`Layout`] is a world file, read once; [`World`] is the state of one robot in it. Sensors look at it through
 //! [`World::layout`], [`World::moving`] and [`World::body`]; rewards and states never do.
 
-mod cast;
-mod drive;
-mod footprint;
+mod contact;
+mod drivetrain;
 mod layout;
 mod mover;
-mod progress;
-mod robot;
+mod obstacle;
 mod route;
+mod route_progress;
 pub mod scene;
+mod stance;
 mod terrain;
 #[cfg(test)]
 mod tests;
+mod vehicle;
 
-pub use cast::RayHit;
-pub use footprint::{HALF_LENGTH_M, HALF_WIDTH_M, HEIGHT_M, STEP_M};
 pub use layout::Layout;
 pub use mover::Mover;
-pub use progress::Progress;
 pub use route::Route;
+pub use route_progress::RouteProgress;
 
 use crate::geometry::{Isometry3, Pose, Twist, rotation};
 use crate::settings::RobotSettings;
-use drive::Drive;
-use footprint::Stance;
+use drivetrain::Drivetrain;
 use mover::Traffic;
 use nalgebra::{Translation3, UnitQuaternion};
-use robot::Robot;
 use scene::Solid;
+use stance::Stance;
 use std::sync::Arc;
+use vehicle::Vehicle;
 
 /// Where the robot's body is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,7 +69,7 @@ pub struct Motion {
 #[derive(Debug, Clone)]
 pub struct World {
     layout: Arc<Layout>,
-    robot: Robot,
+    robot: Vehicle,
     traffic: Traffic,
     period_s: f64,
     periods: u64,
@@ -82,9 +81,16 @@ impl World {
     #[must_use]
     pub fn new(layout: Arc<Layout>, robot: &RobotSettings, period_s: f64, seed: u64) -> Self {
         let start = layout.starts.first().copied().unwrap_or_default();
-        let drive = Drive::new(robot, period_s, seed);
+        let drive = Drivetrain::new(robot, period_s, seed);
         let traffic = Traffic::new(&layout.movers, &layout.routes);
-        Self { robot: Robot::new(drive, &layout, start), traffic, period_s, periods: 0, mover_speed: 1.0, layout }
+        Self {
+            robot: Vehicle::new(robot.body, drive, &layout, start),
+            traffic,
+            period_s,
+            periods: 0,
+            mover_speed: 1.0,
+            layout,
+        }
     }
 
     /// The same world with every mover `speed` times as fast as its file says.
@@ -105,7 +111,7 @@ impl World {
         self.periods += 1;
         if !self.traffic.is_empty() {
             self.traffic.arrange(&self.layout.movers, &self.layout.routes, self.mover_time_s());
-            motion.contact |= self.traffic.touches(self.robot.stance());
+            motion.contact |= self.traffic.touches(self.robot.shape(), self.robot.stance());
         }
         motion
     }
@@ -155,8 +161,9 @@ impl World {
     /// Whether a robot could be placed at `pose`: nothing touches it, and all of its footprint has ground below.
     #[must_use]
     pub fn is_safe(&self, pose: Pose) -> bool {
-        let stance = self.layout.terrain().put(&self.layout.scene, pose).stance;
-        self.layout.obstruction(pose).is_none() && !self.traffic.touches(&stance)
+        let shape = self.robot.shape();
+        let stance = self.layout.terrain().put(&self.layout.scene, shape, pose).stance;
+        self.layout.obstruction(shape, pose).is_none() && !self.traffic.touches(shape, &stance)
     }
 
     /// What the world was made from.

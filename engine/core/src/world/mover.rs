@@ -1,9 +1,11 @@
 //! Things that drive along a route by themselves: the prey of a following behaviour.
 
-use super::footprint::{Obstacle, Stance};
+use super::obstacle::Obstacle;
 use super::route::Route;
 use super::scene::Solid;
+use super::stance::Stance;
 use crate::geometry::{Point3, Pose};
+use crate::settings::BodyShape;
 
 /// A body of boxes that follows a route at constant speed; at the end of an open route it stops.
 #[derive(Debug, Clone, PartialEq)]
@@ -82,7 +84,7 @@ impl Traffic {
         &self.solids
     }
 
-    pub(super) fn touches(&self, body: &Stance) -> bool {
-        self.obstacles.iter().any(|obstacle| obstacle.touches(body))
+    pub(super) fn touches(&self, shape: &BodyShape, stance: &Stance) -> bool {
+        self.obstacles.iter().any(|obstacle| obstacle.touches(shape, stance))
     }
 }

@@ -1,6 +1,8 @@
-//! What stands still: solids, materials, light, and the queries over them.
+//! What stands still in a world: solids, materials, light.
 //!
-//! Plain data first; `Scene::new` puts every solid under one bounding volume hierarchy.
+//! Plain data first; [`Scene::new`] puts every solid under one bounding volume hierarchy, so that contact, ground and
+//! sensors look only at what is near. The hierarchy is all that parry3d is used for; contact and ground are our own, and
+//! tests hold contact against parry3d's.
 
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Vector;

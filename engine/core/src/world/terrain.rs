@@ -1,25 +1,27 @@
-//! What the robot can touch and stand on: the scene as the body meets it.
+//! What bodies can touch and stand on: the scene as they meet it.
 
-use super::footprint::{HALF_LENGTH_M, HALF_WIDTH_M, Obstacle, RADIUS_M, STEP_M, Stance, WHEEL_X_M, WHEEL_Y_M};
+use super::obstacle::Obstacle;
 use super::scene::{Scene, Shape};
+use super::stance::Stance;
 use crate::geometry::Pose;
+use crate::settings::{BodyShape, Footprint};
+use std::f64::consts::TAU;
 
-/// The wheels in the body's axes: front left, front right, rear left, rear right.
-const WHEELS: [(f64, f64); 4] =
-    [(WHEEL_X_M, WHEEL_Y_M), (WHEEL_X_M, -WHEEL_Y_M), (-WHEEL_X_M, WHEEL_Y_M), (-WHEEL_X_M, -WHEEL_Y_M)];
-/// A placed robot finds its wheels' ground at most this much above its centre's: a slope of 1 at a wheel's distance.
-const PLACING_M: f64 = 0.24;
+/// Points of a round footprint's rim under which ground is looked for.
+const RIM_POINTS: usize = 16;
 
 /// The solids of a scene, prepared for contact and for standing on.
 #[derive(Debug, Clone)]
 pub(super) struct Terrain {
     obstacles: Vec<Obstacle>,
-    /// For each solid, whether a robot that is put there stands on top of it.
+    /// For each solid, whether a body that is put there stands on top of it.
     carries: Vec<bool>,
-    /// Nothing but the floor can be stood on.
-    pub(super) flat: bool,
-    /// How far the robot can stand above the floor while it stands level, metres; infinite where it can tip.
-    pub(super) level_height_m: f64,
+    /// Whether there are ramps that can be driven on.
+    has_ramps: bool,
+    /// The lowest top of a solid that can be touched, metres; infinite without any.
+    lowest_top_m: f64,
+    /// The highest top of a solid that carries, metres; none without any.
+    highest_carrying_m: Option<f64>,
 }
 
 /// How a stance is supported.
@@ -29,29 +31,34 @@ pub(super) struct Support {
     pub(super) stance: Stance,
     /// How many of the wheels have no ground within a step.
     pub(super) hanging: usize,
-    /// Whether the centre has none.
+    /// Whether the origin of the body has none.
     pub(super) centre_hangs: bool,
 }
 
 impl Terrain {
-    /// `carries` tells for each solid whether robots are put on top of it: platforms and ramps, not walls.
+    /// `carries` holds for each solid whether bodies are put on top of it: platforms and ramps, not walls.
     pub(super) fn new(scene: &Scene, carries: Vec<bool>) -> Self {
         let solids = &scene.parts().solids;
         let obstacles: Vec<_> = solids.iter().map(Obstacle::new).collect();
-        let can_be_stood_on = |index: usize| {
-            let solid = &solids[index];
-            let climbed = obstacles[index].top_m() <= STEP_M || matches!(solid.shape, Shape::Ramp { .. });
-            solid.collides && (climbed || carries.get(index).is_some_and(|carries| *carries))
-        };
-        let flat = !(0..solids.len()).any(can_be_stood_on);
-        let height_m = |index: usize| {
-            let top_m = obstacles[index].top_m();
-            let tips = top_m <= STEP_M || matches!(solids[index].shape, Shape::Ramp { .. });
-            if tips { f64::INFINITY } else { top_m }
-        };
-        let level_height_m =
-            (0..solids.len()).filter(|index| can_be_stood_on(*index)).map(height_m).fold(0.0, f64::max);
-        Self { obstacles, carries, flat, level_height_m }
+        let touchable = || solids.iter().zip(&obstacles).zip(&carries).filter(|((solid, _), _)| solid.collides);
+        let tops = || touchable().map(|((_, obstacle), _)| obstacle.top_m);
+        let has_ramps = touchable().any(|((solid, _), _)| matches!(solid.shape, Shape::Ramp { .. }));
+        let carrying = touchable().filter(|(_, carries)| **carries).map(|((_, obstacle), _)| obstacle.top_m);
+        let (lowest_top_m, highest_carrying_m) = (tops().fold(f64::INFINITY, f64::min), carrying.reduce(f64::max));
+        Self { has_ramps, lowest_top_m, highest_carrying_m, obstacles, carries }
+    }
+
+    /// Whether a body finds nothing but the floor to stand on.
+    pub(super) fn is_flat(&self, shape: &BodyShape) -> bool {
+        !self.has_ramps && self.highest_carrying_m.is_none() && self.lowest_top_m > shape.step_m
+    }
+
+    /// How far a body can stand above the floor while it stands level, metres; infinite where it can tip.
+    pub(super) fn level_height_m(&self, shape: &BodyShape) -> f64 {
+        if self.has_ramps || self.lowest_top_m <= shape.step_m {
+            return f64::INFINITY;
+        }
+        self.highest_carrying_m.map_or(0.0, |top_m| top_m.max(0.0))
     }
 
     pub(super) fn obstacle(&self, index: u32) -> &Obstacle {
@@ -74,60 +81,108 @@ impl Terrain {
     }
 
     /// The first solid that the body overlaps.
-    pub(super) fn overlapped(&self, scene: &Scene, body: &Stance) -> Option<usize> {
+    pub(super) fn overlapped(&self, scene: &Scene, shape: &BodyShape, stance: &Stance) -> Option<usize> {
         let mut first: Option<u32> = None;
-        Self::visit_near(scene, body.pose, RADIUS_M, |index| {
-            if first.is_none_or(|first| index < first) && self.obstacle(index).touches(body) {
+        Self::visit_near(scene, stance.pose, shape.radius_m(), |index| {
+            if first.is_none_or(|first| index < first) && self.obstacle(index).touches(shape, stance) {
                 first = Some(index);
             }
         });
         first.map(|index| index as usize)
     }
 
-    /// The stance of a robot that is put at `pose`: on the highest platform or ramp there, or on the floor.
-    pub(super) fn put(&self, scene: &Scene, pose: Pose) -> Support {
+    /// The stance of a body that is put at `pose`: on the highest platform or ramp there, or on the floor.
+    pub(super) fn put(&self, scene: &Scene, shape: &BodyShape, pose: Pose) -> Support {
         let level = Stance::level(pose, 0.0);
-        if self.flat {
+        if self.is_flat(shape) {
             return Support { stance: level, hanging: 0, centre_hangs: false };
         }
+        let (wheels, reach_m) = (Wheels::of(shape), shape.radius_m());
         let mut z_m = 0.0_f64;
         let carries = |index: u32| self.carries.get(index as usize).is_some_and(|carries| *carries);
-        Self::visit_near(scene, pose, RADIUS_M, |index| {
+        Self::visit_near(scene, pose, reach_m, |index| {
             if let Some(top) = self.obstacle(index).top_at(pose.x_m, pose.y_m).filter(|_| carries(index)) {
                 z_m = z_m.max(top);
             }
         });
         let stance = Stance { z_m, ..level };
-        let mut grounds = Grounds::below(&stance, PLACING_M);
-        Self::visit_near(scene, pose, RADIUS_M, |index| grounds.add(self.obstacle(index)));
+        let placing_m = wheels.placing_m();
+        let mut grounds = Grounds::below(&stance, wheels, placing_m);
+        Self::visit_near(scene, pose, reach_m, |index| grounds.add(self.obstacle(index)));
         grounds.centre = z_m;
         // A slope shows first at the uphill wheels; a second look with that slope finds the downhill ones.
-        let first = grounds.settle(&stance, PLACING_M);
-        let mut grounds = Grounds::below(&first.stance, STEP_M);
-        Self::visit_near(scene, pose, RADIUS_M, |index| grounds.add(self.obstacle(index)));
-        grounds.settle(&first.stance, STEP_M)
+        let first = grounds.settle(&stance, placing_m);
+        let mut grounds = Grounds::below(&first.stance, wheels, shape.step_m);
+        Self::visit_near(scene, pose, reach_m, |index| grounds.add(self.obstacle(index)));
+        grounds.settle(&first.stance, shape.step_m)
     }
 
     /// The support of a moved body on the solids `near` it.
-    pub(super) fn support(&self, near: &[u32], body: &Stance) -> Support {
-        let mut grounds = Grounds::below(body, STEP_M);
+    pub(super) fn support(&self, near: &[u32], shape: &BodyShape, stance: &Stance) -> Support {
+        let mut grounds = Grounds::below(stance, Wheels::of(shape), shape.step_m);
         near.iter().for_each(|&index| grounds.add(self.obstacle(index)));
-        grounds.settle(body, STEP_M)
+        grounds.settle(stance, shape.step_m)
     }
 
-    /// Whether there is ground within a step under all corners of the footprint.
-    pub(super) fn carries_corners(&self, scene: &Scene, body: &Stance) -> bool {
-        [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)].iter().all(|(x, y)| {
-            let (x, y) = (x * HALF_LENGTH_M, y * HALF_WIDTH_M);
-            let (world_x, world_y) = body.world(x, y);
-            let plane = body.plane_m(x, y);
-            plane - scene.ground_m(world_x, world_y, plane + STEP_M) <= STEP_M
-        })
+    /// Whether there is ground within a step under the edge of the footprint: at a rectangle's corners, or at sixteen
+    /// points of a circle.
+    pub(super) fn carries_edge(&self, scene: &Scene, shape: &BodyShape, stance: &Stance) -> bool {
+        let is_carried = |x: f64, y: f64| {
+            let (world_x, world_y) = stance.world(x, y);
+            let plane = stance.plane_m(x, y);
+            plane - self.ground_m(scene, world_x, world_y, plane + shape.step_m) <= shape.step_m
+        };
+        match shape.footprint {
+            Footprint::Rectangle { ahead_m, .. } => {
+                let [half_x, half_y] = shape.footprint.half_m();
+                [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)]
+                    .iter()
+                    .all(|(x, y)| is_carried(x * half_x + ahead_m, y * half_y))
+            }
+            Footprint::Round { radius_m } => (0..RIM_POINTS).all(|point| {
+                let (sin, cos) = libm::sincos(TAU * point as f64 / RIM_POINTS as f64);
+                is_carried(radius_m * cos, radius_m * sin)
+            }),
+        }
+    }
+
+    /// The highest ground at a place of the floor plan that is not above `below_z_m`; the floor, 0, where there is none.
+    pub(super) fn ground_m(&self, scene: &Scene, x_m: f64, y_m: f64, below_z_m: f64) -> f64 {
+        let mut ground = 0.0_f64;
+        Self::visit_near(scene, Pose::new(x_m, y_m, 0.0), 0.0, |index| {
+            if let Some(top) = self.obstacle(index).top_at(x_m, y_m).filter(|top| *top <= below_z_m) {
+                ground = ground.max(top);
+            }
+        });
+        ground
+    }
+}
+
+/// The four wheels of a body in its axes: front left, front right, rear left, rear right.
+#[derive(Debug, Clone, Copy)]
+struct Wheels {
+    half_base: f64,
+    half_track: f64,
+    places: [(f64, f64); 4],
+}
+
+impl Wheels {
+    fn of(shape: &BodyShape) -> Self {
+        let (x, y) = (0.5 * shape.wheelbase_m, 0.5 * shape.track_m);
+        Self { half_base: x, half_track: y, places: [(x, y), (x, -y), (-x, y), (-x, -y)] }
+    }
+
+    /// How far above the ground of its origin a placed body looks for that of its wheels, metres: a slope of 1 at their
+    /// distance, rounded up to a centimetre.
+    fn placing_m(&self) -> f64 {
+        let (x, y) = (self.half_base, self.half_track);
+        ((x * x + y * y).sqrt() * 100.0).ceil() / 100.0
     }
 }
 
 /// The highest grounds, not above a limit, under the four wheels and the centre.
 struct Grounds {
+    at: Wheels,
     points: [(f64, f64, f64); 5],
     wheels: [f64; 4],
     centre: f64,
@@ -135,13 +190,13 @@ struct Grounds {
 
 impl Grounds {
     /// The floor, until solids are added. Nothing more than `above_m` over the body's plane counts.
-    fn below(body: &Stance, above_m: f64) -> Self {
+    fn below(body: &Stance, at: Wheels, above_m: f64) -> Self {
         let point = |(x, y): (f64, f64)| {
             let (world_x, world_y) = body.world(x, y);
             (world_x, world_y, body.plane_m(x, y) + above_m)
         };
-        let [a, b, c, d] = WHEELS.map(point);
-        Self { points: [a, b, c, d, point((0.0, 0.0))], wheels: [0.0; 4], centre: 0.0 }
+        let [a, b, c, d] = at.places.map(point);
+        Self { at, points: [a, b, c, d, point((0.0, 0.0))], wheels: [0.0; 4], centre: 0.0 }
     }
 
     fn add(&mut self, obstacle: &Obstacle) {
@@ -154,7 +209,8 @@ impl Grounds {
     }
 
     fn settle(&self, body: &Stance, drop_m: f64) -> Support {
-        let hangs = |wheel: usize| body.plane_m(WHEELS[wheel].0, WHEELS[wheel].1) - self.wheels[wheel] > drop_m;
+        let Wheels { half_base, half_track, places } = self.at;
+        let hangs = |wheel: usize| body.plane_m(places[wheel].0, places[wheel].1) - self.wheels[wheel] > drop_m;
         let hanging = (0..4).filter(|&wheel| hangs(wheel)).count();
         let centre_hangs = body.z_m - self.centre > drop_m;
         let mut heights = self.wheels;
@@ -170,8 +226,8 @@ impl Grounds {
         let [front_left, front_right, rear_left, rear_right] = heights;
         let stance = Stance {
             z_m: 0.25 * (front_left + front_right + rear_left + rear_right),
-            slope_x: (front_left + front_right - rear_left - rear_right) / (4.0 * WHEEL_X_M),
-            slope_y: (front_left + rear_left - front_right - rear_right) / (4.0 * WHEEL_Y_M),
+            slope_x: (front_left + front_right - rear_left - rear_right) / (4.0 * half_base),
+            slope_y: (front_left + rear_left - front_right - rear_right) / (4.0 * half_track),
             ..*body
         };
         Support { stance, hanging, centre_hangs }

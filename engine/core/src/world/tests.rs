@@ -2,13 +2,28 @@
 
 use super::*;
 use crate::diagnostic::SourceText;
-use crate::geometry::{Point3, Vector3};
+use crate::geometry::Point3;
+use crate::settings::{BodyShape, Footprint};
 use std::f64::consts::FRAC_PI_2;
 
-const EXACT: RobotSettings = RobotSettings { lag_s: 0.0, speed_noise: 0.0, slip: 0.0, tick_s: 0.05 };
+const PIONEER: BodyShape = BodyShape::pioneer2at();
+const HALF_LENGTH_M: f64 = 0.2485;
+const EXACT: RobotSettings = RobotSettings { body: PIONEER, lag_s: 0.0, speed_noise: 0.0, slip: 0.0, tick_s: 0.05 };
+
+/// A round robot of the size of a TurtleBot3 Waffle.
+const ROUND: RobotSettings = RobotSettings {
+    body: BodyShape {
+        footprint: Footprint::Round { radius_m: 0.22 },
+        height_m: 0.2,
+        step_m: 0.01,
+        wheelbase_m: 0.2,
+        track_m: 0.29,
+    },
+    ..EXACT
+};
 
 fn layout(text: &str) -> Arc<Layout> {
-    Arc::new(Layout::parse(SourceText::new("test.toml", text)).unwrap_or_else(|error| panic!("{error:?}")))
+    Arc::new(Layout::parse(SourceText::new("test.toml", text), &PIONEER).unwrap_or_else(|error| panic!("{error:?}")))
 }
 
 fn world(text: &str) -> World {
@@ -17,7 +32,7 @@ fn world(text: &str) -> World {
 
 fn shipped(name: &str) -> Arc<Layout> {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../worlds/{name}.toml"));
-    Arc::new(Layout::load(&path).unwrap_or_else(|error| panic!("{error:?}")))
+    Arc::new(Layout::load(&path, &PIONEER).unwrap_or_else(|error| panic!("{error:?}")))
 }
 
 fn drive(world: &mut World, linear: f64, angular: f64, periods: usize) -> Motion {
@@ -58,6 +73,44 @@ fn turning_beside_a_wall_brings_a_corner_against_it() {
     // The inner face is 0.3 m away: the side at 0.238 m is clear, the corner at 0.344 m is not.
     assert!(drive(&mut world, 0.0, 0.8, 2).contact);
     assert!(world.body().pose.yaw_rad > 0.1);
+}
+
+#[test]
+fn a_round_body_turns_beside_a_wall_and_stops_at_its_radius_before_one() {
+    let beside = "[[wall]]\npoints_m = [[-3, -0.35], [3, -0.35]]\n[[start]]\nposition_m = [0, 0]\n";
+    let mut turning = World::new(layout(beside), &ROUND, 0.5, 1);
+    assert!(!drive(&mut turning, 0.0, 0.8, 20).contact);
+    let mut world = World::new(layout(WALL_AHEAD), &ROUND, 0.5, 1);
+    assert!(drive(&mut world, 0.4, 0.0, 6).contact);
+    let gap = 1.0 - 0.22 - world.body().pose.x_m;
+    assert!((0.0..0.4 * 0.05 / 16.0 + 1e-9).contains(&gap), "{gap}");
+}
+
+#[test]
+fn what_a_body_climbs_and_where_it_is_safe_is_its_own() {
+    let kerb = format!("[[box]]\ncentre_m = [2, 0]\nsize_m = [2, 4, 0.05]\n{START}");
+    assert!(drive(&mut World::new(layout(&kerb), &ROUND, 0.5, 1), 0.4, 0.0, 10).contact);
+    // The platform's edge is at 0.9 m, the room's wall at 0.
+    let platform = World::new(shipped("platform"), &ROUND, 0.5, 1);
+    assert_eq!(platform.body().z_m, 0.5);
+    assert!(platform.is_safe(Pose::new(3.0, 0.67, 0.3)) && !platform.is_safe(Pose::new(3.0, 0.69, 0.3)));
+    let room = World::new(shipped("room"), &ROUND, 0.5, 1);
+    assert!(room.is_safe(Pose::new(3.0, 0.23, 0.3)) && !room.is_safe(Pose::new(3.0, 0.21, 0.3)));
+}
+
+#[test]
+fn a_round_body_tips_on_a_ramp_and_falls_over_an_edge() {
+    let ramp = "[[ramp]]\ncentre_m = [2, 0]\nsize_m = [2, 2, 0.4]\n[[start]]\nposition_m = [0, 0]\n";
+    let mut world =
+        World::new(layout(ramp), &RobotSettings { body: BodyShape { step_m: 0.03, ..ROUND.body }, ..EXACT }, 0.5, 1);
+    assert!(!drive(&mut world, 0.4, 0.0, 10).contact);
+    let body = world.body();
+    assert!((body.z_m - 0.2).abs() < 1e-9 && (body.pitch_rad + libm::atan(0.2)).abs() < 1e-9, "{body:?}");
+    let mut world = World::new(shipped("platform"), &ROUND, 0.5, 1);
+    world.place(Pose::new(3.0, 0.0, -FRAC_PI_2));
+    // The front wheels leave the edge at 0.9 m when the centre is at 0.8 m.
+    assert!(!drive(&mut world, 0.2, 0.0, 7).fallen && drive(&mut world, 0.2, 0.0, 2).fallen);
+    assert!((world.body().pose.y_m + 0.8).abs() < 0.011, "{:?}", world.body());
 }
 
 #[test]
@@ -145,7 +198,7 @@ fn the_prey_drives_along_its_route_and_can_be_touched() {
 
 #[test]
 fn the_same_seed_drives_the_same_way_and_another_does_not() {
-    let noisy = RobotSettings { lag_s: 0.15, speed_noise: 0.05, slip: 0.1, tick_s: 0.05 };
+    let noisy = RobotSettings { lag_s: 0.15, speed_noise: 0.05, slip: 0.1, ..EXACT };
     let end = |seed| {
         let mut world = World::new(shipped("room"), &noisy, 0.33, seed);
         drive(&mut world, 0.2, 0.4, 100);
@@ -157,7 +210,7 @@ fn the_same_seed_drives_the_same_way_and_another_does_not() {
 
 #[test]
 fn whatever_is_commanded_the_body_never_ends_inside_a_solid_or_in_the_air() {
-    let noisy = RobotSettings { lag_s: 0.15, speed_noise: 0.2, slip: 0.2, tick_s: 0.1 };
+    let noisy = RobotSettings { lag_s: 0.15, speed_noise: 0.2, slip: 0.2, tick_s: 0.1, ..EXACT };
     for name in ["room", "rectangle", "corridor", "platform"] {
         let mut world = World::new(shipped(name), &noisy, 0.5, 9);
         let mut random = crate::random::Random::new(9, crate::random::Stream::Test);
@@ -169,7 +222,7 @@ fn whatever_is_commanded_the_body_never_ends_inside_a_solid_or_in_the_air() {
             if motion.fallen {
                 world.place(start);
             }
-            let obstruction = world.layout().obstruction(world.body().pose);
+            let obstruction = world.layout().obstruction(&PIONEER, world.body().pose);
             assert!(!matches!(obstruction, Some(super::layout::Obstruction::Solid(_))), "{name}: {:?}", world.body());
             assert!(name != "platform" || (world.body().z_m - 0.5).abs() < 1e-12);
         }
@@ -178,25 +231,13 @@ fn whatever_is_commanded_the_body_never_ends_inside_a_solid_or_in_the_air() {
 }
 
 #[test]
-fn a_ray_meets_the_same_distances_as_a_ruler() {
-    let scene = &layout(
-        "[[wall]]\npoints_m = [[2.05, -3], [2.05, 3]]\n[[cylinder]]\ncentre_m = [0, 2]\nradius_m = 0.5\nheight_m = 1\n\
-         [[ramp]]\ncentre_m = [-2, 0]\nsize_m = [2, 2, 1]\nyaw_deg = 180\n[[start]]\nposition_m = [0, 0]\n",
-    )
-    .scene;
-    let cast = |z: f64, direction: Vector3| scene.cast_ray(Point3::new(0.0, 0.0, z), direction.normalize(), 100.0);
-    let ahead = cast(0.5, Vector3::x()).unwrap();
-    assert!((ahead.distance_m - 2.0).abs() < 1e-5 && (ahead.normal + Vector3::x()).norm() < 1e-6);
-    assert_eq!(ahead.solid, Some(0));
-    assert!((cast(0.5, Vector3::y()).unwrap().distance_m - 1.5).abs() < 1e-3);
-    // The ramp rises away from the origin, from x = -1 to x = -3.
-    let slope = cast(0.5, -Vector3::x()).unwrap();
-    assert!((slope.distance_m - 2.0).abs() < 1e-4, "{slope:?}");
-    let down = cast(0.5, Vector3::new(1.0, 0.0, -1.0)).unwrap();
-    assert!(down.solid.is_none() && (down.distance_m - 0.5 * std::f64::consts::SQRT_2).abs() < 1e-12);
-    assert_eq!(cast(2.0, Vector3::x()), None);
-    assert!((scene.ground_m(-2.5, 0.0, 9.0) - 0.75).abs() < 1e-12);
-    assert_eq!(scene.ground_m(-2.5, 0.0, 0.5), 0.0);
+fn the_ground_is_the_highest_top_that_is_not_above_a_limit() {
+    // The ramp rises from x = -1 to x = -3.
+    let ramp = "[[ramp]]\ncentre_m = [-2, 0]\nsize_m = [2, 2, 1]\nyaw_deg = 180\n";
+    let layout = layout(&format!("{ramp}{START}"));
+    let ground_m = |below_z_m| layout.terrain().ground_m(&layout.scene, -2.5, 0.0, below_z_m);
+    assert!((ground_m(9.0) - 0.75).abs() < 1e-12);
+    assert_eq!(ground_m(0.5), 0.0);
 }
 
 #[test]

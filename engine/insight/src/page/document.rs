@@ -8,7 +8,6 @@ use engine::diagnostic::Result;
 use engine::experiment::{Plan, WINDOW_STEPS};
 use engine::learner::Carry;
 use engine::settings::{SETTINGS, Settings, Value};
-use engine::world::{HALF_LENGTH_M, HALF_WIDTH_M};
 
 /// The contract's number; a page shows only documents of its own.
 const FORMAT: u32 = 2;
@@ -159,7 +158,7 @@ impl Document {
     /// # Errors
     /// If the grid cannot be made.
     pub fn without_seeds(plan: &Plan) -> Result<Self> {
-        let Settings { run, actions, laser, .. } = &plan.settings;
+        let Settings { run, robot, actions, laser, .. } = &plan.settings;
         let world = Ground::new(&plan.layout);
         let far = world.bounds_m.iter().fold(1.0, |far: f64, at| far.max(at.abs()));
         let beams = laser.beams as usize;
@@ -175,7 +174,7 @@ impl Document {
             // Room for a robot that falls off the edge of the world.
             unit_m: (2.0 * far / REACH).max(0.001),
             world,
-            robot_half_m: [HALF_LENGTH_M, HALF_WIDTH_M],
+            robot_half_m: robot.body.footprint.half_m(),
             period_s: run.period_s,
             window_steps: WINDOW_STEPS,
             planned_steps: plan.learning_steps(),

@@ -47,8 +47,8 @@ fn plan_in(world: &str) -> Plan {
     let script =
         "world(\"w\");\nrule \"near\" when laser.nearest <= 0.25 => -1 then recover;\nfn reward(facts) {\n    0.1\n}\n";
     let behaviour = Arc::new(Behaviour::parse("short", SourceText::new("short.rhai", script)).unwrap());
-    let layout = Arc::new(Layout::parse(SourceText::new("w.toml", world)).unwrap());
     let settings = Settings { ..behaviour.settings().clone() };
+    let layout = Arc::new(Layout::parse(SourceText::new("w.toml", world), &settings.robot.body).unwrap());
     let plan =
         Plan::with_layout(behaviour, settings, layout, Arc::new(engine::filter::Catalogue::linked_in())).unwrap();
     plan.with_changes(&Overrides { steps: Some(40), test_steps: Some(1), ..Overrides::default() }).unwrap()

@@ -172,7 +172,9 @@ impl StoredRun {
             );
             return Diagnostic::new("E-RUN-FILE", message).fail();
         }
-        let layout = Arc::new(Layout::parse(file.world.check(&source)?)?);
+        // No file says which body yet.
+        let body = Settings::default().robot.body;
+        let layout = Arc::new(Layout::parse(file.world.check(&source)?, &body)?);
         file.filters.iter().try_for_each(|filter| filter.check(&filters))?;
         let plan_of = |script: &TextEntry, table: &Table| {
             let behaviour = Arc::new(Behaviour::parse(&file.behaviour, script.check(&source)?)?);

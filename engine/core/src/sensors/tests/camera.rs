@@ -1,7 +1,7 @@
 //! The camera against one exact ray for each pixel.
 
-use super::oracle::{box_at, entry, is_free, random_pose, random_solids, scene};
-use crate::geometry::{Isometry3, Pose, Vector3};
+use super::oracle::{box_at, entry, is_free, on_the_floor, random_pose, random_solids, scene};
+use crate::geometry::{Isometry3, Vector3};
 use crate::random::{Random, Stream};
 use crate::sensors::observation::Image;
 use crate::sensors::{Camera, self_test};
@@ -163,7 +163,7 @@ fn a_checkered_floor_changes_colour_at_whole_squares() {
     let mut parts = scene(Vec::new(), 1).parts().clone();
     parts.materials[0].texture = Texture::Checker { amplitude: 20.0, scale_m: 0.2 };
     let settings = CameraSettings { forward_m: 0.0, height_m: 1.0, ..settings(100, 80, 90.0, 90.0) };
-    let image = shot(&Arc::new(Scene::new(parts)), &settings, &Pose::new(0.1, 0.1, 0.0).world_from_local(0.0), &[]);
+    let image = shot(&Arc::new(Scene::new(parts)), &settings, &on_the_floor(0.1, 0.1, 0.0), &[]);
     // 50 pixels to the metre: squares of 10 pixels; the middle of the image is the middle of the square at the origin.
     for column in 0..100 {
         let lighter = ((column + 5) / 10) % 2 == 1;

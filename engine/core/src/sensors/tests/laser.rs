@@ -1,7 +1,7 @@
 //! The laser against exact rays and hand-computed ranges.
 
-use super::oracle::{box_at, entry, is_free, random_pose, random_solids, scene};
-use crate::geometry::{Isometry3, Pose, Vector3};
+use super::oracle::{box_at, entry, is_free, on_the_floor, random_pose, random_solids, scene};
+use crate::geometry::{Isometry3, Vector3};
 use crate::random::{Random, Stream};
 use crate::sensors::Laser;
 use crate::sensors::observation::Scan;
@@ -38,7 +38,7 @@ fn walls_ahead_and_to_the_right_are_at_their_distances() {
 #[test]
 fn tilted_down_by_45_degrees_it_sees_the_flat_floor() {
     let tilted = LaserSettings { tilt_deg: 45.0, ..settings() };
-    let ranges = scan(scene(Vec::new(), 1), &tilted, &Pose::new(2.0, 1.0, 0.7).world_from_local(0.0), &[]);
+    let ranges = scan(scene(Vec::new(), 1), &tilted, &on_the_floor(2.0, 1.0, 0.7), &[]);
     let front = 0.38 * 2_f64.sqrt();
     assert!(is_close(ranges[90], front));
     for (beam, range) in ranges.iter().enumerate().take(171).skip(10) {

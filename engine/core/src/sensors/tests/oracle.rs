@@ -94,6 +94,12 @@ pub(super) fn random_pose(random: &mut Random) -> Isometry3 {
     Isometry3::from_parts(place, UnitQuaternion::from_rotation_matrix(&turn))
 }
 
+/// The transform from the axes of a robot that stands level on the floor, metres and radians.
+pub(super) fn on_the_floor(x_m: f64, y_m: f64, yaw_rad: f64) -> Isometry3 {
+    let turn = UnitQuaternion::from_rotation_matrix(&rotation(yaw_rad, 0.0, 0.0));
+    Isometry3::from_parts(Translation3::new(x_m, y_m, 0.0), turn)
+}
+
 /// Whether a point keeps some distance from every solid.
 pub(super) fn is_free(solids: &[Solid], point: &Vector3) -> bool {
     solids.iter().all(|solid| {

@@ -1,8 +1,8 @@
 //! From the checked tables of a world file to its parts.
 
-use super::reader::{Row, read};
+use super::Layout;
+use super::reader::{FileRow, read};
 use super::schema::MOST_SOLIDS;
-use super::{Layout, starts};
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, nearest_name, printable};
 use crate::geometry::{Point2, Point3, Pose, Vector3};
 use crate::world::mover::Mover;
@@ -17,7 +17,19 @@ const PAINT_M: f64 = 0.001;
 /// The material of everything that names none.
 const PLAIN: &str = "plain";
 
-pub(super) fn layout(source: SourceText) -> Result<Layout> {
+/// A world as its file says it, and where the file says it.
+pub(super) struct Built {
+    pub(super) layout: Layout,
+    pub(super) file: FileRow,
+    /// Where each solid of the scene was written.
+    pub(super) origins: Vec<Origin>,
+}
+
+/// Reads a world and builds it; whether anything can stand at its starts is not looked at.
+///
+/// # Errors
+/// Every mistake in the file's keys, values and names, as one error.
+pub(super) fn build(source: SourceText) -> Result<Built> {
     let mut mistakes = Mistakes::new(&source);
     let file = match read(&source, &mut mistakes) {
         Ok(file) => file,
@@ -48,16 +60,15 @@ pub(super) fn layout(source: SourceText) -> Result<Layout> {
         movers,
         terrain: Arc::new(terrain),
     };
-    starts::check(&layout, &file, &origins)?;
-    Ok(layout)
+    Ok(Built { layout, file, origins })
 }
 
-fn pose(row: &Row) -> Pose {
+fn pose(row: &FileRow) -> Pose {
     let place = row.numbers("position_m");
     Pose::new(place[0], place[1], yaw(row))
 }
 
-fn yaw(row: &Row) -> f64 {
+fn yaw(row: &FileRow) -> f64 {
     row.number("yaw_deg").unwrap_or(0.0).to_radians()
 }
 
@@ -78,8 +89,8 @@ struct Builder<'a> {
 }
 
 /// Whether a name may be one that a mistake in its own table, or in the name of a section, has kept from being read.
-fn is_lost(file: &Row, section: &str, name: &str) -> bool {
-    let may_be = |row: &Row| row.text("name").is_none_or(|known| known == name);
+fn is_lost(file: &FileRow, section: &str, name: &str) -> bool {
+    let may_be = |row: &FileRow| row.text("name").is_none_or(|known| known == name);
     file.misspelt || file.rows(section).iter().any(|row| !row.sound && may_be(row)) || file.lacks(section)
 }
 
@@ -89,7 +100,7 @@ impl<'a> Builder<'a> {
         Self { source, mistakes, materials, solids, carries: Vec::new(), origins: Vec::new() }
     }
 
-    fn materials(&mut self, file: &Row) {
+    fn materials(&mut self, file: &FileRow) {
         for row in file.sound_rows("material") {
             let name = row.text("name").unwrap_or_default().to_owned();
             if self.materials.iter().any(|material| material.name == name) {
@@ -111,7 +122,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn twice(&self, what: &str, row: &Row) -> Diagnostic {
+    fn twice(&self, what: &str, row: &FileRow) -> Diagnostic {
         let name = printable(row.text("name").unwrap_or_default());
         error("E-WORLD-NAME", format!("there are two {what}s with the name '{name}'"))
             .at(self.source, row.span_of("name"), "used before")
@@ -119,7 +130,7 @@ impl<'a> Builder<'a> {
     }
 
     /// The material that a table names; 0 if there is none, which is then a mistake.
-    fn material(&mut self, file: &Row, row: &Row) -> usize {
+    fn material(&mut self, file: &FileRow, row: &FileRow) -> usize {
         let name = row.text("material").unwrap_or(PLAIN);
         self.materials.iter().position(|material| material.name == name).unwrap_or_else(|| {
             if !is_lost(file, "material", name) && self.mistakes.wants(self.source, row.span_of("material").start) {
@@ -134,7 +145,7 @@ impl<'a> Builder<'a> {
         &self,
         what: &str,
         name: &str,
-        row: &Row,
+        row: &FileRow,
         names: impl Iterator<Item = &'n str> + Clone,
     ) -> Diagnostic {
         let help = match nearest_name(name, names.clone()) {
@@ -146,14 +157,14 @@ impl<'a> Builder<'a> {
             .help(help)
     }
 
-    fn floor(&mut self, file: &Row) -> usize {
+    fn floor(&mut self, file: &FileRow) -> usize {
         match file.sound_rows("floor").next() {
             Some(row) => self.material(file, row),
             None => self.materials.iter().position(|material| material.name == PLAIN).unwrap_or(0),
         }
     }
 
-    fn light(&mut self, file: &Row) -> Light {
+    fn light(&mut self, file: &FileRow) -> Light {
         let row = file.sound_rows("light").next();
         let mut towards = Vector3::new(0.3, 0.5, 0.8);
         if let Some(row) = row
@@ -171,7 +182,7 @@ impl<'a> Builder<'a> {
         Light { towards: towards.normalize(), ambient: number("ambient", 0.4), gain: number("gain", 1.0) }
     }
 
-    fn solids(&mut self, file: &Row) {
+    fn solids(&mut self, file: &FileRow) {
         for section in ["wall", "box", "cylinder", "platform", "ramp", "paint"] {
             for row in file.sound_rows(section) {
                 let added = self.solid(file, section, row);
@@ -182,7 +193,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn solid(&mut self, file: &Row, section: &str, row: &Row) -> Result<()> {
+    fn solid(&mut self, file: &FileRow, section: &str, row: &FileRow) -> Result<()> {
         let number = |key: &str, default: f64| row.number(key).unwrap_or(default);
         let size = row.numbers("size_m");
         let half_m = |height| 0.5 * Vector3::new(size[0], size[1], height);
@@ -207,7 +218,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Whether a table describes a line or one solid; it must describe exactly one of them, and all of it.
-    fn is_line(&self, section: &str, row: &Row, line: &[&str], solid: &[&str]) -> Result<bool> {
+    fn is_line(&self, section: &str, row: &FileRow, line: &[&str], solid: &[&str]) -> Result<bool> {
         let has = |key: &&&str| row.span_of(key) != row.span;
         let (line_keys, solid_keys) = (line.iter().filter(has).count(), solid.iter().filter(has).count());
         if (line_keys, solid_keys) == (line.len(), 0) || (line_keys, solid_keys) == (0, solid.len()) {
@@ -220,7 +231,7 @@ impl<'a> Builder<'a> {
     }
 
     /// A box on every segment of a line, half of its width longer at both ends so that corners are square.
-    fn line(&mut self, file: &Row, section: &'static str, row: &Row, width: f64, height: f64) -> Result<()> {
+    fn line(&mut self, file: &FileRow, section: &'static str, row: &FileRow, width: f64, height: f64) -> Result<()> {
         let points = row.points("points_m");
         let closed = row.flag("closed").unwrap_or(false);
         self.check_closed(points, closed)?;
@@ -248,7 +259,7 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    fn upright(&mut self, file: &Row, section: &'static str, row: &Row, shape: Shape) -> Result<()> {
+    fn upright(&mut self, file: &FileRow, section: &'static str, row: &FileRow, shape: Shape) -> Result<()> {
         let place = row.numbers("centre_m");
         let z = row.number("bottom_m").unwrap_or(0.0) + shape.half_extents().z;
         self.add(file, section, row, shape, (Point3::new(place[0], place[1], z), yaw(row)))
@@ -256,9 +267,9 @@ impl<'a> Builder<'a> {
 
     fn add(
         &mut self,
-        file: &Row,
+        file: &FileRow,
         section: &'static str,
-        row: &Row,
+        row: &FileRow,
         shape: Shape,
         (centre, yaw_rad): (Point3, f64),
     ) -> Result<()> {
@@ -275,7 +286,7 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    fn routes(&mut self, file: &Row) -> Vec<Route> {
+    fn routes(&mut self, file: &FileRow) -> Vec<Route> {
         let mut routes: Vec<Route> = Vec::new();
         for row in file.sound_rows("route") {
             let route = self.route(row, &routes);
@@ -284,7 +295,7 @@ impl<'a> Builder<'a> {
         routes
     }
 
-    fn route(&self, row: &Row, before: &[Route]) -> Result<Route> {
+    fn route(&self, row: &FileRow, before: &[Route]) -> Result<Route> {
         let name = row.text("name").unwrap_or_default();
         if before.iter().any(|route| route.name == name) {
             return self.twice("route", row).fail();
@@ -311,7 +322,7 @@ impl<'a> Builder<'a> {
         Ok(Route::new(name, points, closed))
     }
 
-    fn movers(&mut self, file: &Row, routes: &[Route]) -> Vec<Mover> {
+    fn movers(&mut self, file: &FileRow, routes: &[Route]) -> Vec<Mover> {
         let mut movers: Vec<Mover> = Vec::new();
         for row in file.sound_rows("mover") {
             let name = row.text("name").unwrap_or_default();
@@ -345,7 +356,7 @@ impl<'a> Builder<'a> {
         movers
     }
 
-    fn has_start(&mut self, file: &Row) {
+    fn has_start(&mut self, file: &FileRow) {
         if !file.rows("start").is_empty() || file.misspelt || file.lacks("start") {
             return;
         }
@@ -357,7 +368,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-fn texture(row: &Row) -> Texture {
+fn texture(row: &FileRow) -> Texture {
     let (amplitude, scale_m) = (row.number("amplitude").unwrap_or(10.0), row.number("scale_m").unwrap_or(0.2));
     match row.text("kind") {
         Some("checker") => Texture::Checker { amplitude, scale_m },

@@ -13,6 +13,7 @@ use super::scene::Scene;
 use super::terrain::Terrain;
 use crate::diagnostic::{Diagnostic, Result, SourceText};
 use crate::geometry::Pose;
+use crate::settings::BodyShape;
 use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
@@ -29,7 +30,7 @@ pub struct Layout {
     pub source: SourceText,
     /// What stands still.
     pub scene: Arc<Scene>,
-    /// Where the robot can start; never empty.
+    /// Where a robot can start; never empty.
     pub starts: Vec<Pose>,
     /// Every route of the file, in its order.
     pub routes: Vec<Route>,
@@ -40,7 +41,7 @@ pub struct Layout {
     terrain: Arc<Terrain>,
 }
 
-/// Why a robot cannot stand somewhere.
+/// Why a body cannot stand somewhere.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Obstruction {
     /// It overlaps the solid with this index.
@@ -50,26 +51,28 @@ pub(super) enum Obstruction {
 }
 
 impl Layout {
-    /// How far above the floor the robot can stand while it stands level, metres: 0 without platforms, infinite where
+    /// How far above the floor a body can stand while it stands level, metres: 0 without platforms, infinite where
     /// ramps or kerbs can tip it.
     #[must_use]
-    pub fn level_height_m(&self) -> f64 {
-        self.terrain.level_height_m
+    pub fn level_height_m(&self, body: &BodyShape) -> f64 {
+        self.terrain.level_height_m(body)
     }
 
-    /// Reads a world from its text.
+    /// Reads a world from its text. `body` is the one that must be able to stand at every start.
     ///
     /// # Errors
     /// `E-WORLD-SYNTAX`, `-KEY`, `-VALUE`, `-NAME`, `-START`: each at the place in the file.
-    pub fn parse(source: SourceText) -> Result<Self> {
-        build::layout(source)
+    pub fn parse(source: SourceText, body: &BodyShape) -> Result<Self> {
+        let built = build::build(source)?;
+        starts::check_starts(&built, body)?;
+        Ok(built.layout)
     }
 
-    /// Reads a world file.
+    /// Reads a world file. `body` is the one that must be able to stand at every start.
     ///
     /// # Errors
     /// `E-WORLD-FILE` if it cannot be read, is longer than 1 MiB or is not UTF-8; else those of [`Layout::parse`].
-    pub fn load(path: &Path) -> Result<Self> {
+    pub fn load(path: &Path, body: &BodyShape) -> Result<Self> {
         let shown = path.display();
         let wrong = |reason: &str, help: &str| {
             Box::new(Diagnostic::new("E-WORLD-FILE", format!("cannot read the world '{shown}': {reason}")).help(help))
@@ -99,23 +102,23 @@ impl Layout {
             return Err(wrong("it is longer than 1 MiB", "a world of that size must be split or simplified"));
         }
         let text = String::from_utf8(bytes).map_err(|_| wrong("it is not text in UTF-8", "save it as UTF-8"))?;
-        Self::parse(SourceText::new(path, text))
+        Self::parse(SourceText::new(path, text), body)
     }
 
     pub(super) fn terrain(&self) -> &Terrain {
         &self.terrain
     }
 
-    /// Why a robot cannot be placed at `pose`, movers left aside.
-    pub(super) fn obstruction(&self, pose: Pose) -> Option<Obstruction> {
-        let support = self.terrain.put(&self.scene, pose);
-        if let Some(solid) = self.terrain.overlapped(&self.scene, &support.stance) {
+    /// Why a body cannot be placed at `pose`, whatever moves left aside.
+    pub(super) fn obstruction(&self, body: &BodyShape, pose: Pose) -> Option<Obstruction> {
+        let support = self.terrain.put(&self.scene, body, pose);
+        if let Some(solid) = self.terrain.overlapped(&self.scene, body, &support.stance) {
             return Some(Obstruction::Solid(solid));
         }
-        let supported = self.terrain.flat
+        let supported = self.terrain.is_flat(body)
             || (support.hanging == 0
                 && !support.centre_hangs
-                && self.terrain.carries_corners(&self.scene, &support.stance));
+                && self.terrain.carries_edge(&self.scene, body, &support.stance));
         (!supported).then_some(Obstruction::NoGround)
     }
 }

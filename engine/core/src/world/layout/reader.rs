@@ -1,12 +1,12 @@
 //! Reads a world file against its schema: syntax, names, types and ranges, each error at the user's own place.
 
-use super::schema::{FILE, Form, Key, MOST_POINTS};
+use super::schema::{FILE, FileKey, KeyForm, MOST_POINTS};
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, nearest_name, printable};
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-type Value<'a> = Spanned<DeValue<'a>>;
+type Written<'a> = Spanned<DeValue<'a>>;
 
 /// A checked value.
 #[derive(Debug)]
@@ -16,12 +16,12 @@ pub(super) enum Field {
     Numbers(Vec<f64>),
     /// Points with their places.
     Points(Vec<([f64; 2], Range<usize>)>),
-    Rows(Vec<Row>),
+    Rows(Vec<FileRow>),
 }
 
 /// A checked table.
 #[derive(Debug)]
-pub(super) struct Row {
+pub(super) struct FileRow {
     /// Where it begins.
     pub(super) span: Range<usize>,
     /// Whether there is no mistake in it.
@@ -32,7 +32,7 @@ pub(super) struct Row {
     unusable: Vec<&'static str>,
 }
 
-impl Row {
+impl FileRow {
     fn field(&self, key: &str) -> Option<&Field> {
         self.fields.iter().find(|(name, ..)| *name == key).map(|(.., field)| field)
     }
@@ -83,7 +83,7 @@ impl Row {
 ///
 /// # Errors
 /// If it is not TOML.
-pub(super) fn read(source: &SourceText, mistakes: &mut Mistakes) -> Result<Row> {
+pub(super) fn read(source: &SourceText, mistakes: &mut Mistakes) -> Result<FileRow> {
     let table = match DeTable::parse(&source.text) {
         Ok(table) => table,
         Err(error) if !is_double(&error) => return syntax(source, &error).fail(),
@@ -97,7 +97,7 @@ pub(super) fn read(source: &SourceText, mistakes: &mut Mistakes) -> Result<Row> 
             table
         }
     };
-    Ok(Reader { source, mistakes }.row(table.get_ref(), 0..0, "", FILE))
+    Ok(FileReader { source, mistakes }.row(table.get_ref(), 0..0, "", FILE))
 }
 
 fn is_double(error: &toml::de::Error) -> bool {
@@ -118,14 +118,14 @@ fn syntax(source: &SourceText, error: &toml::de::Error) -> Diagnostic {
         .help(help)
 }
 
-struct Reader<'a> {
+struct FileReader<'a> {
     source: &'a SourceText,
     mistakes: &'a mut Mistakes,
 }
 
-impl Reader<'_> {
-    fn row(&mut self, table: &DeTable<'_>, span: Range<usize>, section: &str, keys: &'static [Key]) -> Row {
-        let mut row = Row { span, sound: true, misspelt: false, fields: Vec::new(), unusable: Vec::new() };
+impl FileReader<'_> {
+    fn row(&mut self, table: &DeTable<'_>, span: Range<usize>, section: &str, keys: &'static [FileKey]) -> FileRow {
+        let mut row = FileRow { span, sound: true, misspelt: false, fields: Vec::new(), unusable: Vec::new() };
         let mut entries: Vec<_> = table.iter().collect();
         entries.sort_by_key(|(name, _)| name.span().start);
         for (name, value) in entries {
@@ -163,7 +163,12 @@ impl Reader<'_> {
         row
     }
 
-    fn unknown(&self, name: &Spanned<std::borrow::Cow<'_, str>>, section: &str, keys: &'static [Key]) -> Diagnostic {
+    fn unknown(
+        &self,
+        name: &Spanned<std::borrow::Cow<'_, str>>,
+        section: &str,
+        keys: &'static [FileKey],
+    ) -> Diagnostic {
         let written = name.get_ref();
         let stem = written.rsplit_once('_').map_or(written.as_ref(), |(stem, _)| stem);
         // `height_cm` and `height` both mean `height_m`: the stem is right, the unit is not.
@@ -184,7 +189,7 @@ impl Reader<'_> {
         Diagnostic::new("E-WORLD-KEY", message).at(self.source, name.span(), "not known").help(help)
     }
 
-    fn wrong(&self, key: &Key, value: &Value<'_>, label: impl Into<String>) -> Diagnostic {
+    fn wrong(&self, key: &FileKey, value: &Written<'_>, label: impl Into<String>) -> Diagnostic {
         Diagnostic::new("E-WORLD-VALUE", format!("'{}' must be {}", key.name, key.allowed())).at(
             self.source,
             value.span(),
@@ -192,17 +197,17 @@ impl Reader<'_> {
         )
     }
 
-    fn value(&mut self, key: &'static Key, value: &Value<'_>) -> Option<Field> {
+    fn value(&mut self, key: &'static FileKey, value: &Written<'_>) -> Option<Field> {
         let found = |reader: &Self| reader.wrong(key, value, format!("found {}", shown(value.get_ref())));
         match key.form {
-            Form::Table(keys) => match value.get_ref().as_table() {
+            KeyForm::Table(keys) => match value.get_ref().as_table() {
                 Some(table) => Some(Field::Rows(vec![self.row(table, value.span(), &format!("[{}]", key.name), keys)])),
                 None => {
                     self.mistakes.add(found(self));
                     None
                 }
             },
-            Form::Tables(keys, most) => self.tables(key, value, keys, most),
+            KeyForm::Tables(keys, most) => self.tables(key, value, keys, most),
             _ => {
                 let field = self.plain(key, value);
                 self.mistakes.take(field)
@@ -210,7 +215,13 @@ impl Reader<'_> {
         }
     }
 
-    fn tables(&mut self, key: &'static Key, value: &Value<'_>, keys: &'static [Key], most: usize) -> Option<Field> {
+    fn tables(
+        &mut self,
+        key: &'static FileKey,
+        value: &Written<'_>,
+        keys: &'static [FileKey],
+        most: usize,
+    ) -> Option<Field> {
         let Some(tables) = value.get_ref().as_array() else {
             self.mistakes.add(self.wrong(key, value, format!("found {}", shown(value.get_ref()))));
             return None;
@@ -233,12 +244,12 @@ impl Reader<'_> {
         whole.then_some(Field::Rows(rows))
     }
 
-    fn plain(&self, key: &'static Key, value: &Value<'_>) -> Result<Field> {
+    fn plain(&self, key: &'static FileKey, value: &Written<'_>) -> Result<Field> {
         let found = || self.wrong(key, value, format!("found {}", shown(value.get_ref())));
         Ok(match key.form {
-            Form::Text => Field::Text(value.get_ref().as_str().ok_or_else(found)?.to_owned()),
-            Form::Flag => Field::Flag(value.get_ref().as_bool().ok_or_else(found)?),
-            Form::Choice(words) => {
+            KeyForm::Text => Field::Text(value.get_ref().as_str().ok_or_else(found)?.to_owned()),
+            KeyForm::Flag => Field::Flag(value.get_ref().as_bool().ok_or_else(found)?),
+            KeyForm::Choice(words) => {
                 let word = value.get_ref().as_str().ok_or_else(found)?;
                 if !words.contains(&word) {
                     let near = nearest_name(word, words.iter().copied());
@@ -250,16 +261,16 @@ impl Reader<'_> {
                 }
                 Field::Text(word.to_owned())
             }
-            Form::Number(low, high) => Field::Numbers(vec![self.number(key, value, |n| (low..=high).contains(&n))?]),
-            Form::Numbers(count, low, high) => {
+            KeyForm::Number(low, high) => Field::Numbers(vec![self.number(key, value, |n| (low..=high).contains(&n))?]),
+            KeyForm::Numbers(count, low, high) => {
                 Field::Numbers(self.array(key, value, count..=count, |n| (low..=high).contains(&n))?)
             }
-            Form::Points(least) => Field::Points(self.points(key, value, least)?),
-            Form::Table(_) | Form::Tables(..) => return found().fail(),
+            KeyForm::Points(least) => Field::Points(self.points(key, value, least)?),
+            KeyForm::Table(_) | KeyForm::Tables(..) => return found().fail(),
         })
     }
 
-    fn number(&self, key: &Key, value: &Value<'_>, allowed: impl Fn(f64) -> bool) -> Result<f64> {
+    fn number(&self, key: &FileKey, value: &Written<'_>, allowed: impl Fn(f64) -> bool) -> Result<f64> {
         let number = match value.get_ref() {
             DeValue::Integer(whole) => i64::from_str_radix(whole.as_str(), whole.radix()).ok().map(|n| n as f64),
             DeValue::Float(float) => float.as_str().parse().ok(),
@@ -274,8 +285,8 @@ impl Reader<'_> {
 
     fn array(
         &self,
-        key: &Key,
-        value: &Value<'_>,
+        key: &FileKey,
+        value: &Written<'_>,
         count: std::ops::RangeInclusive<usize>,
         allowed: impl Fn(f64) -> bool,
     ) -> Result<Vec<f64>> {
@@ -288,7 +299,7 @@ impl Reader<'_> {
         array.iter().map(|number| self.number(key, number, &allowed)).collect()
     }
 
-    fn points(&self, key: &Key, value: &Value<'_>, least: usize) -> Result<Vec<([f64; 2], Range<usize>)>> {
+    fn points(&self, key: &FileKey, value: &Written<'_>, least: usize) -> Result<Vec<([f64; 2], Range<usize>)>> {
         let Some(array) = value.get_ref().as_array() else {
             return self.wrong(key, value, format!("found {}", shown(value.get_ref()))).fail();
         };
@@ -297,7 +308,7 @@ impl Reader<'_> {
         }
         let mut points: Vec<([f64; 2], Range<usize>)> = Vec::with_capacity(array.len());
         for point in array {
-            let pair = self.array(key, point, 2..=2, Key::coordinate)?;
+            let pair = self.array(key, point, 2..=2, FileKey::coordinate)?;
             let here = [pair[0], pair[1]];
             let (x, y) = points.last().map_or((f64::MAX, 0.0), |(last, _)| (here[0] - last[0], here[1] - last[1]));
             if x.abs().max(y.abs()) < 1e-6 {

@@ -2,7 +2,7 @@
 
 /// What a key may hold.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Form {
+pub(crate) enum KeyForm {
     /// Text.
     Text,
     /// True or false.
@@ -16,27 +16,27 @@ pub(crate) enum Form {
     /// One of these words.
     Choice(&'static [&'static str]),
     /// One table.
-    Table(&'static [Key]),
+    Table(&'static [FileKey]),
     /// Any number of tables up to the limit.
-    Tables(&'static [Key], usize),
+    Tables(&'static [FileKey], usize),
 }
 
 /// One key of a table.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Key {
+pub(crate) struct FileKey {
     pub(crate) name: &'static str,
     /// In words; empty where there is none.
     pub(crate) unit: &'static str,
-    pub(crate) form: Form,
+    pub(crate) form: KeyForm,
     pub(crate) required: bool,
 }
 
-const fn must(name: &'static str, unit: &'static str, form: Form) -> Key {
-    Key { name, unit, form, required: true }
+const fn must(name: &'static str, unit: &'static str, form: KeyForm) -> FileKey {
+    FileKey { name, unit, form, required: true }
 }
 
-const fn may(name: &'static str, unit: &'static str, form: Form) -> Key {
-    Key { name, unit, form, required: false }
+const fn may(name: &'static str, unit: &'static str, form: KeyForm) -> FileKey {
+    FileKey { name, unit, form, required: false }
 }
 
 /// Coordinates and lengths end here: at 1000 m single precision still resolves a tenth of a millimetre.
@@ -47,49 +47,49 @@ pub(crate) const MOST_POINTS: usize = 10_000;
 /// Most solids of a world.
 pub(crate) const MOST_SOLIDS: usize = 20_000;
 
-const PLACE: Form = Form::Numbers(2, -FAR, FAR);
-const SIZE: Form = Form::Numbers(3, THIN, FAR);
-const LENGTH: Form = Form::Number(THIN, FAR);
-const BOTTOM: Key = may("bottom_m", "metres", Form::Number(0.0, FAR));
-const YAW: Key = may("yaw_deg", "degrees", Form::Number(-360.0, 360.0));
-const MATERIAL: Key = may("material", "", Form::Text);
-const CLOSED: Key = may("closed", "", Form::Flag);
+const PLACE: KeyForm = KeyForm::Numbers(2, -FAR, FAR);
+const SIZE: KeyForm = KeyForm::Numbers(3, THIN, FAR);
+const LENGTH: KeyForm = KeyForm::Number(THIN, FAR);
+const BOTTOM: FileKey = may("bottom_m", "metres", KeyForm::Number(0.0, FAR));
+const YAW: FileKey = may("yaw_deg", "degrees", KeyForm::Number(-360.0, 360.0));
+const MATERIAL: FileKey = may("material", "", KeyForm::Text);
+const CLOSED: FileKey = may("closed", "", KeyForm::Flag);
 
-const FLOOR: &[Key] = &[must("material", "", Form::Text)];
-const LIGHT: &[Key] = &[
-    may("towards", "", Form::Numbers(3, -1.0, 1.0)),
-    may("ambient", "share", Form::Number(0.0, 1.0)),
-    may("gain", "times", Form::Number(0.05, 5.0)),
+const FLOOR: &[FileKey] = &[must("material", "", KeyForm::Text)];
+const LIGHT: &[FileKey] = &[
+    may("towards", "", KeyForm::Numbers(3, -1.0, 1.0)),
+    may("ambient", "share", KeyForm::Number(0.0, 1.0)),
+    may("gain", "times", KeyForm::Number(0.05, 5.0)),
 ];
-const TEXTURE: &[Key] = &[
-    must("kind", "", Form::Choice(&["plain", "checker", "stripes", "noise"])),
-    may("amplitude", "grey levels", Form::Number(0.0, 127.0)),
+const TEXTURE: &[FileKey] = &[
+    must("kind", "", KeyForm::Choice(&["plain", "checker", "stripes", "noise"])),
+    may("amplitude", "grey levels", KeyForm::Number(0.0, 127.0)),
     may("scale_m", "metres", LENGTH),
 ];
-const MATERIALS: &[Key] = &[
-    must("name", "", Form::Text),
-    must("colour", "red, green, blue", Form::Numbers(3, 0.0, 255.0)),
-    may("texture", "", Form::Table(TEXTURE)),
-    may("laser", "", Form::Flag),
+const MATERIALS: &[FileKey] = &[
+    must("name", "", KeyForm::Text),
+    must("colour", "red, green, blue", KeyForm::Numbers(3, 0.0, 255.0)),
+    may("texture", "", KeyForm::Table(TEXTURE)),
+    may("laser", "", KeyForm::Flag),
 ];
-const WALL: &[Key] = &[
-    must("points_m", "metres", Form::Points(2)),
+const WALL: &[FileKey] = &[
+    must("points_m", "metres", KeyForm::Points(2)),
     CLOSED,
     may("height_m", "metres", LENGTH),
     may("thickness_m", "metres", LENGTH),
     BOTTOM,
     MATERIAL,
 ];
-const BOX: &[Key] = &[must("centre_m", "metres", PLACE), must("size_m", "metres", SIZE), YAW, BOTTOM, MATERIAL];
-const CYLINDER: &[Key] = &[
+const BOX: &[FileKey] = &[must("centre_m", "metres", PLACE), must("size_m", "metres", SIZE), YAW, BOTTOM, MATERIAL];
+const CYLINDER: &[FileKey] = &[
     must("centre_m", "metres", PLACE),
     must("radius_m", "metres", LENGTH),
     must("height_m", "metres", LENGTH),
     BOTTOM,
     MATERIAL,
 ];
-const PLATFORM: &[Key] = &[
-    may("points_m", "metres", Form::Points(2)),
+const PLATFORM: &[FileKey] = &[
+    may("points_m", "metres", KeyForm::Points(2)),
     CLOSED,
     may("width_m", "metres", LENGTH),
     may("height_m", "metres", LENGTH),
@@ -99,62 +99,62 @@ const PLATFORM: &[Key] = &[
     BOTTOM,
     MATERIAL,
 ];
-const PAINT: &[Key] = &[
-    may("points_m", "metres", Form::Points(2)),
+const PAINT: &[FileKey] = &[
+    may("points_m", "metres", KeyForm::Points(2)),
     CLOSED,
     may("width_m", "metres", LENGTH),
     may("centre_m", "metres", PLACE),
-    may("size_m", "metres", Form::Numbers(2, THIN, FAR)),
+    may("size_m", "metres", KeyForm::Numbers(2, THIN, FAR)),
     YAW,
     MATERIAL,
 ];
-const START: &[Key] = &[must("position_m", "metres", PLACE), YAW];
-const ROUTE: &[Key] = &[
-    must("name", "", Form::Text),
-    must("points_m", "metres", Form::Points(2)),
+const START: &[FileKey] = &[must("position_m", "metres", PLACE), YAW];
+const ROUTE: &[FileKey] = &[
+    must("name", "", KeyForm::Text),
+    must("points_m", "metres", KeyForm::Points(2)),
     CLOSED,
-    may("corner_radius_m", "metres", Form::Number(0.0, FAR)),
+    may("corner_radius_m", "metres", KeyForm::Number(0.0, FAR)),
 ];
-const MOVER_BOX: &[Key] =
-    &[must("centre_m", "metres", Form::Numbers(3, -FAR, FAR)), must("size_m", "metres", SIZE), YAW, MATERIAL];
-const MOVER: &[Key] = &[
-    must("name", "", Form::Text),
-    must("route", "", Form::Text),
-    must("speed_m_per_s", "metres per second", Form::Number(0.0, 10.0)),
-    may("offset_m", "metres", Form::Number(0.0, 100_000.0)),
-    must("boxes", "", Form::Tables(MOVER_BOX, 64)),
+const MOVER_BOX: &[FileKey] =
+    &[must("centre_m", "metres", KeyForm::Numbers(3, -FAR, FAR)), must("size_m", "metres", SIZE), YAW, MATERIAL];
+const MOVER: &[FileKey] = &[
+    must("name", "", KeyForm::Text),
+    must("route", "", KeyForm::Text),
+    must("speed_m_per_s", "metres per second", KeyForm::Number(0.0, 10.0)),
+    may("offset_m", "metres", KeyForm::Number(0.0, 100_000.0)),
+    must("boxes", "", KeyForm::Tables(MOVER_BOX, 64)),
 ];
 
 /// The whole file.
-pub(crate) const FILE: &[Key] = &[
-    may("description", "", Form::Text),
-    may("floor", "", Form::Table(FLOOR)),
-    may("light", "", Form::Table(LIGHT)),
-    may("material", "", Form::Tables(MATERIALS, 256)),
-    may("wall", "", Form::Tables(WALL, MOST_SOLIDS)),
-    may("box", "", Form::Tables(BOX, MOST_SOLIDS)),
-    may("cylinder", "", Form::Tables(CYLINDER, MOST_SOLIDS)),
-    may("platform", "", Form::Tables(PLATFORM, MOST_SOLIDS)),
-    may("ramp", "", Form::Tables(BOX, MOST_SOLIDS)),
-    may("paint", "", Form::Tables(PAINT, MOST_SOLIDS)),
-    may("start", "", Form::Tables(START, 1000)),
-    may("route", "", Form::Tables(ROUTE, 64)),
-    may("mover", "", Form::Tables(MOVER, 64)),
+pub(crate) const FILE: &[FileKey] = &[
+    may("description", "", KeyForm::Text),
+    may("floor", "", KeyForm::Table(FLOOR)),
+    may("light", "", KeyForm::Table(LIGHT)),
+    may("material", "", KeyForm::Tables(MATERIALS, 256)),
+    may("wall", "", KeyForm::Tables(WALL, MOST_SOLIDS)),
+    may("box", "", KeyForm::Tables(BOX, MOST_SOLIDS)),
+    may("cylinder", "", KeyForm::Tables(CYLINDER, MOST_SOLIDS)),
+    may("platform", "", KeyForm::Tables(PLATFORM, MOST_SOLIDS)),
+    may("ramp", "", KeyForm::Tables(BOX, MOST_SOLIDS)),
+    may("paint", "", KeyForm::Tables(PAINT, MOST_SOLIDS)),
+    may("start", "", KeyForm::Tables(START, 1000)),
+    may("route", "", KeyForm::Tables(ROUTE, 64)),
+    may("mover", "", KeyForm::Tables(MOVER, 64)),
 ];
 
-impl Key {
+impl FileKey {
     /// What it may hold, in words: `0.001 to 1000 (metres)`.
     pub(crate) fn allowed(&self) -> String {
         let unit = if self.unit.is_empty() { String::new() } else { format!(" ({})", self.unit) };
         match self.form {
-            Form::Text => "text in quotes".to_owned(),
-            Form::Flag => "true or false".to_owned(),
-            Form::Number(low, high) => format!("a number from {low} to {high}{unit}"),
-            Form::Numbers(count, low, high) => format!("{count} numbers in [ ], each from {low} to {high}{unit}"),
-            Form::Points(least) => format!("at least {least} points [x, y], each number from -{FAR} to {FAR}{unit}"),
-            Form::Choice(words) => words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", "),
-            Form::Table(_) => format!("one table, written [{}] or {{ }}", self.name),
-            Form::Tables(..) => format!("tables, written [[{}]] or [{{ }}]", self.name),
+            KeyForm::Text => "text in quotes".to_owned(),
+            KeyForm::Flag => "true or false".to_owned(),
+            KeyForm::Number(low, high) => format!("a number from {low} to {high}{unit}"),
+            KeyForm::Numbers(count, low, high) => format!("{count} numbers in [ ], each from {low} to {high}{unit}"),
+            KeyForm::Points(least) => format!("at least {least} points [x, y], each number from -{FAR} to {FAR}{unit}"),
+            KeyForm::Choice(words) => words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", "),
+            KeyForm::Table(_) => format!("one table, written [{}] or {{ }}", self.name),
+            KeyForm::Tables(..) => format!("tables, written [[{}]] or [{{ }}]", self.name),
         }
     }
 

@@ -1,14 +1,15 @@
 //! Every mistake in a world file is told at its place, with what to write instead.
 
-use super::schema::{FILE, Form, Key};
+use super::schema::{FILE, FileKey, KeyForm};
 use super::*;
 use crate::diagnostic::Kind;
 use crate::world::scene::{Shape, Texture};
 
+const PIONEER: BodyShape = BodyShape::pioneer2at();
 const START: &str = "[[start]]\nposition_m = [0, 0]\n";
 
 fn parse(text: &str) -> Result<Layout> {
-    Layout::parse(SourceText::new("worlds/test.toml", text))
+    Layout::parse(SourceText::new("worlds/test.toml", text), &PIONEER)
 }
 
 /// The code, the underlined text, the words beside it and the next step.
@@ -38,7 +39,7 @@ fn shipped() -> Vec<Layout> {
     paths.sort();
     paths
         .iter()
-        .map(|path| Layout::load(path).unwrap_or_else(|error| panic!("{}: {error:?}", path.display())))
+        .map(|path| Layout::load(path, &PIONEER).unwrap_or_else(|error| panic!("{}: {error:?}", path.display())))
         .collect()
 }
 
@@ -51,7 +52,7 @@ fn every_shipped_world_loads_and_can_be_driven_along_its_lap_if_it_has_one() {
         let Some(lap) = layout.lap.map(|lap| &layout.routes[lap]) else { continue };
         for piece in 0..200 {
             let pose = lap.pose_at(lap.length_m() * f64::from(piece) / 200.0);
-            assert_eq!(layout.obstruction(pose), None, "{} at {pose:?}", layout.name);
+            assert_eq!(layout.obstruction(&PIONEER, pose), None, "{} at {pose:?}", layout.name);
         }
         for start in &layout.starts {
             let distance = lap.nearest(crate::geometry::Point2::new(start.x_m, start.y_m)).1;
@@ -155,6 +156,11 @@ fn a_start_must_be_free_and_on_the_ground() {
     );
     let edge = "[[platform]]\ncentre_m = [0, 0]\nsize_m = [0.6, 0.4, 0.5]\n";
     expect(&format!("{edge}{START}"), "E-WORLD-START", "[0, 0]", "no ground");
+    let round = BodyShape { footprint: crate::settings::Footprint::Round { radius_m: 0.22 }, ..PIONEER };
+    let help = |text: String| Layout::parse(SourceText::new("test.toml", text), &round).unwrap_err().help.unwrap();
+    let wall = wall("").replace("[[1, 1], [2, 1]]", "[[0.2, -1], [0.2, 1]]");
+    assert_eq!(help(wall), "the robot needs 0.22 m on all sides of this place");
+    assert_eq!(help(format!("{edge}{START}")), "move it at least 0.22 m away from every edge");
     assert_eq!(mistake("description = \"empty\"\n").0, "E-WORLD-START");
     assert_eq!(mistake("").0, "E-WORLD-START");
 }
@@ -230,21 +236,21 @@ fn twenty_mistakes_of_a_world_are_shown_and_the_others_counted() {
 fn a_file_that_cannot_be_read_says_why() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("w.toml");
-    let message = || Layout::load(&path).map(|_| ()).unwrap_err();
+    let message = || Layout::load(&path, &PIONEER).map(|_| ()).unwrap_err();
     assert!(message().code == "E-WORLD-FILE" && message().message.contains("no such file"));
     std::fs::write(&path, [0xff, 0xfe, 0x00]).unwrap();
     assert!(message().message.contains("UTF-8"));
     std::fs::write(&path, " ".repeat((1 << 20) + 1)).unwrap();
     assert!(message().message.contains("1 MiB"));
-    assert!(Layout::load(folder.path()).unwrap_err().message.contains("folder"));
+    assert!(Layout::load(folder.path(), &PIONEER).unwrap_err().message.contains("folder"));
 }
 
 #[test]
 fn the_manual_names_every_key() {
-    fn names(keys: &'static [Key], found: &mut Vec<&'static str>) {
+    fn names(keys: &'static [FileKey], found: &mut Vec<&'static str>) {
         for key in keys {
             found.push(key.name);
-            if let Form::Table(keys) | Form::Tables(keys, _) = key.form {
+            if let KeyForm::Table(keys) | KeyForm::Tables(keys, _) = key.form {
                 names(keys, found);
             }
         }

@@ -71,7 +71,7 @@ pub(super) fn with_boxes(plan: &Plan, solids: usize) -> Result<Plan> {
         // Writing to a String cannot fail.
         let _ = write!(text, "\n[[box]]\ncentre_m = [{x_m}, {y_m}]\nsize_m = [0.5, 0.5, 1]\n");
     }
-    let layout = Layout::parse(SourceText::new(&plan.layout.source.path, text))?;
+    let layout = Layout::parse(SourceText::new(&plan.layout.source.path, text), &plan.settings.robot.body)?;
     Plan::with_layout(Arc::clone(&plan.behaviour), plan.settings.clone(), Arc::new(layout), Arc::clone(&plan.filters))
 }
 

@@ -16,8 +16,8 @@ const THIRD: &str = "recovery(\"start\");\nlearner(#{ step_size: 0.2 });\n\
 
 fn plan(script: &str, steps: u64) -> Plan {
     let behaviour = Behaviour::parse("log", SourceText::new("log.rhai", script)).unwrap();
-    let layout = Arc::new(Layout::parse(SourceText::new("log.toml", WORLD)).unwrap());
     let mut settings = behaviour.settings().clone();
+    let layout = Arc::new(Layout::parse(SourceText::new("log.toml", WORLD), &settings.robot.body).unwrap());
     (settings.run.steps, settings.run.test_steps) = (steps, 40);
     Plan::with_layout(Arc::new(behaviour), settings, layout, Arc::new(Catalogue::linked_in())).unwrap()
 }

@@ -32,8 +32,8 @@ struct Sample {
 /// 1,200 steps of learning, so that there are two chunks, and 40 of the test.
 static SAMPLE: LazyLock<Sample> = LazyLock::new(|| {
     let behaviour = Behaviour::parse("log", SourceText::new("log.rhai", SCRIPT)).unwrap();
-    let layout = Arc::new(Layout::parse(SourceText::new("log.toml", WORLD)).unwrap());
     let mut settings = behaviour.settings().clone();
+    let layout = Arc::new(Layout::parse(SourceText::new("log.toml", WORLD), &settings.robot.body).unwrap());
     (settings.run.steps, settings.run.test_steps) = (1200, 40);
     let plan = Plan::with_layout(Arc::new(behaviour), settings, layout, Arc::new(Catalogue::linked_in())).unwrap();
     let (mut learning, mut test) = (Ledger::new(&plan, 1200), Ledger::new(&plan, 40));

@@ -6,7 +6,7 @@ use crate::settings::RobotSettings;
 
 /// The drive of the robot: wheels that follow a command with a first-order lag, and a ground on which they skid.
 #[derive(Debug, Clone)]
-pub(super) struct Drive {
+pub(super) struct Drivetrain {
     pub(super) ticks: u32,
     pub(super) tick_s: f64,
     /// Share of the difference to the command that is left after one tick, and its mean over the tick.
@@ -19,7 +19,7 @@ pub(super) struct Drive {
     random: Random,
 }
 
-impl Drive {
+impl Drivetrain {
     pub(super) fn new(robot: &RobotSettings, period_s: f64, seed: u64) -> Self {
         // 0.5 / 0.05 must be ten ticks, whatever its last bit says.
         let ticks = (period_s / robot.tick_s - 1e-9).ceil().max(1.0);
@@ -82,10 +82,14 @@ impl Drive {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::settings::BodyShape;
+
+    const EXACT: RobotSettings =
+        RobotSettings { body: BodyShape::pioneer2at(), lag_s: 0.0, speed_noise: 0.0, slip: 0.0, tick_s: 0.05 };
 
     fn distance(tick_s: f64) -> f64 {
-        let robot = RobotSettings { lag_s: 0.15, speed_noise: 0.0, slip: 0.0, tick_s };
-        let mut drive = Drive::new(&robot, 0.5, 1);
+        let robot = RobotSettings { lag_s: 0.15, tick_s, ..EXACT };
+        let mut drive = Drivetrain::new(&robot, 0.5, 1);
         drive.begin();
         (0..drive.ticks).map(|_| drive.tick(Twist::new(0.4, 0.0)).linear_m_per_s * drive.tick_s).sum()
     }
@@ -101,16 +105,15 @@ mod tests {
 
     #[test]
     fn half_a_second_has_ten_ticks_of_fifty_milliseconds() {
-        let robot = RobotSettings { lag_s: 0.0, speed_noise: 0.0, slip: 0.0, tick_s: 0.05 };
-        let drive = Drive::new(&robot, 0.5, 1);
+        let drive = Drivetrain::new(&EXACT, 0.5, 1);
         assert_eq!((drive.ticks, drive.tick_s), (10, 0.05));
-        assert_eq!(Drive::new(&robot, 0.33, 1).ticks, 7);
+        assert_eq!(Drivetrain::new(&EXACT, 0.33, 1).ticks, 7);
     }
 
     #[test]
     fn slip_takes_a_share_of_the_turn_only() {
-        let robot = RobotSettings { lag_s: 0.0, speed_noise: 0.0, slip: 0.25, tick_s: 0.05 };
-        let mut drive = Drive::new(&robot, 0.5, 1);
+        let robot = RobotSettings { slip: 0.25, ..EXACT };
+        let mut drive = Drivetrain::new(&robot, 0.5, 1);
         drive.begin();
         let wheels = drive.tick(Twist::new(0.2, 0.8));
         assert_eq!(wheels, Twist::new(0.2, 0.8));

@@ -1,17 +1,19 @@
 //! The robot's body: it drives, stops at what it touches, climbs, and falls.
 
 use super::Motion;
-use super::drive::Drive;
-use super::footprint::{RADIUS_M, Stance};
+use super::drivetrain::Drivetrain;
 use super::layout::Layout;
 use super::mover::Traffic;
+use super::stance::Stance;
 use super::terrain::Terrain;
 use crate::geometry::{Pose, Twist};
+use crate::settings::BodyShape;
 
 /// The body and its drive.
 #[derive(Debug, Clone)]
-pub(super) struct Robot {
-    drive: Drive,
+pub(super) struct Vehicle {
+    shape: BodyShape,
+    drive: Drivetrain,
     stance: Stance,
     fallen: bool,
     /// Solids that can be reached in the present period.
@@ -22,6 +24,7 @@ pub(super) struct Robot {
 
 /// All that can stop the body in one period.
 struct Obstacles<'a> {
+    shape: &'a BodyShape,
     terrain: &'a Terrain,
     blocking: &'a [u32],
     /// None if nothing moves, or the body overlaps a mover already.
@@ -30,8 +33,8 @@ struct Obstacles<'a> {
 
 impl Obstacles<'_> {
     fn block(&self, body: &Stance) -> bool {
-        self.blocking.iter().any(|&index| self.terrain.obstacle(index).touches(body))
-            || self.traffic.is_some_and(|traffic| traffic.touches(body))
+        self.blocking.iter().any(|&index| self.terrain.obstacle(index).touches(self.shape, body))
+            || self.traffic.is_some_and(|traffic| traffic.touches(self.shape, body))
     }
 
     /// The last free stance on the way of a blocked tick, to a sixteenth of it, and the share of the tick until there.
@@ -48,10 +51,14 @@ impl Obstacles<'_> {
     }
 }
 
-impl Robot {
-    pub(super) fn new(drive: Drive, layout: &Layout, pose: Pose) -> Self {
-        let stance = layout.terrain().put(&layout.scene, pose).stance;
-        Self { drive, stance, fallen: false, near: Vec::with_capacity(64), blocking: Vec::with_capacity(64) }
+impl Vehicle {
+    pub(super) fn new(shape: BodyShape, drive: Drivetrain, layout: &Layout, pose: Pose) -> Self {
+        let stance = layout.terrain().put(&layout.scene, &shape, pose).stance;
+        Self { shape, drive, stance, fallen: false, near: Vec::with_capacity(64), blocking: Vec::with_capacity(64) }
+    }
+
+    pub(super) fn shape(&self) -> &BodyShape {
+        &self.shape
     }
 
     pub(super) fn stance(&self) -> &Stance {
@@ -60,7 +67,7 @@ impl Robot {
 
     /// At rest at `pose`.
     pub(super) fn place(&mut self, layout: &Layout, pose: Pose) {
-        self.stance = layout.terrain().put(&layout.scene, pose).stance;
+        self.stance = layout.terrain().put(&layout.scene, &self.shape, pose).stance;
         self.fallen = false;
         self.drive.stop();
     }
@@ -74,11 +81,12 @@ impl Robot {
         }
         let terrain = layout.terrain();
         motion.contact = self.gather(layout, command);
-        let held = traffic.touches(&self.stance);
+        let held = traffic.touches(&self.shape, &self.stance);
         motion.contact |= held;
         let traffic = Some(traffic).filter(|traffic| !held && !traffic.is_empty());
-        let obstacles = Obstacles { terrain, blocking: &self.blocking, traffic };
-        if terrain.flat && obstacles.blocking.is_empty() && traffic.is_none() {
+        let (shape, flat) = (&self.shape, terrain.is_flat(&self.shape));
+        let obstacles = Obstacles { shape, terrain, blocking: &self.blocking, traffic };
+        if flat && obstacles.blocking.is_empty() && traffic.is_none() {
             let mut pose = self.stance.pose;
             motion.odometry = drive_through(&mut self.drive, command, |twist, tick_s| {
                 pose = pose.moved(twist, tick_s);
@@ -96,8 +104,8 @@ impl Robot {
                 motion.contact = true;
             }
             *stance = next;
-            if !terrain.flat {
-                let support = terrain.support(near, stance);
+            if !flat {
+                let support = terrain.support(near, shape, stance);
                 *stance = support.stance;
                 *fallen = support.hanging > 1 || support.centre_hangs;
             }
@@ -109,13 +117,13 @@ impl Robot {
 
     /// Collects what can be reached, and tells whether the body overlaps any of it already.
     fn gather(&mut self, layout: &Layout, command: Twist) -> bool {
-        let (terrain, stance) = (layout.terrain(), &self.stance);
+        let (terrain, shape, stance) = (layout.terrain(), &self.shape, &self.stance);
         let (near, blocking) = (&mut self.near, &mut self.blocking);
         near.clear();
         blocking.clear();
-        Terrain::visit_near(&layout.scene, stance.pose, self.drive.reach_m(command) + RADIUS_M, |index| {
+        Terrain::visit_near(&layout.scene, stance.pose, self.drive.reach_m(command) + shape.radius_m(), |index| {
             near.push(index);
-            if !terrain.obstacle(index).touches(stance) {
+            if !terrain.obstacle(index).touches(shape, stance) {
                 blocking.push(index);
             }
         });
@@ -125,7 +133,7 @@ impl Robot {
 
 /// Gives every tick's twist to `go`, which returns the share of the tick that was driven, or nothing to end the period
 /// there. A tick cut short stops the wheels. Returns the wheels' mean speed.
-fn drive_through(drive: &mut Drive, command: Twist, mut go: impl FnMut(Twist, f64) -> Option<f64>) -> Twist {
+fn drive_through(drive: &mut Drivetrain, command: Twist, mut go: impl FnMut(Twist, f64) -> Option<f64>) -> Twist {
     let (tick_s, share) = (drive.tick_s, 1.0 / f64::from(drive.ticks));
     let mut mean = Twist::default();
     for _ in 0..drive.ticks {

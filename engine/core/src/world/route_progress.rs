@@ -10,13 +10,13 @@ const NEARER_M: f64 = 1.0;
 
 /// Signed, unwrapped distance along one route. Driving back counts down; driving round it twice counts two laps.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Progress {
+pub struct RouteProgress {
     at: Point2,
     along_m: f64,
     net_m: f64,
 }
 
-impl Progress {
+impl RouteProgress {
     /// No progress yet, beginning at the place of the route nearest to `at`.
     #[must_use]
     pub fn new(route: &Route, at: Point2) -> Self {
@@ -43,7 +43,7 @@ impl Progress {
         (self.at, self.along_m) = (at, along_m);
     }
 
-    /// Progress so far, metres; negative if it is against the route's direction.
+    /// RouteProgress so far, metres; negative if it is against the route's direction.
     #[must_use]
     pub fn net_m(&self) -> f64 {
         self.net_m
@@ -64,7 +64,7 @@ mod tests {
         Route::new("lap", points.iter().map(|&(x, y)| Point2::new(x, y)).collect(), true)
     }
 
-    fn drive(progress: &mut Progress, from_m: f64, to_m: f64) {
+    fn drive(progress: &mut RouteProgress, from_m: f64, to_m: f64) {
         let steps = 400;
         for step in 1..=steps {
             let pose = route().pose_at(from_m + (to_m - from_m) * f64::from(step) / f64::from(steps));
@@ -74,7 +74,7 @@ mod tests {
 
     #[test]
     fn two_laps_forward_and_one_back_are_one_lap() {
-        let mut progress = Progress::new(&route(), Point2::new(0.0, 0.0));
+        let mut progress = RouteProgress::new(&route(), Point2::new(0.0, 0.0));
         drive(&mut progress, 0.0, 72.0);
         assert!((progress.net_m() - 72.0).abs() < 1e-9);
         drive(&mut progress, 72.0, 36.0);
@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn circling_in_the_middle_is_no_progress() {
         let at = |angle: f64| Point2::new(5.0 + 0.3 * libm::cos(angle), 4.0 + 0.3 * libm::sin(angle));
-        let mut progress = Progress::new(&route(), at(0.0));
+        let mut progress = RouteProgress::new(&route(), at(0.0));
         for step in 0..2000 {
             progress.update(&route(), at(f64::from(step) * 0.1));
         }
@@ -93,7 +93,7 @@ mod tests {
 
     #[test]
     fn a_recovery_counts_nothing() {
-        let mut progress = Progress::new(&route(), Point2::new(1.0, 0.0));
+        let mut progress = RouteProgress::new(&route(), Point2::new(1.0, 0.0));
         progress.jump(&route(), Point2::new(10.0, 4.0));
         progress.update(&route(), Point2::new(10.0, 4.5));
         assert_eq!(progress.net_m(), 0.5);
