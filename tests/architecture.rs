@@ -31,7 +31,7 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("SystemTime", &["program"]),
     ("rhai::", &["reward"]),
     ("parry3d", &["world"]),
-    ("plotters", &["report"]),
+    ("skrifa", &["report"]),
     ("HashMap", &["reward"]),
     ("thread_rng", &[]),
     (".mul_add(", &[]),

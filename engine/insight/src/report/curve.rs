@@ -33,29 +33,29 @@ pub struct CurveData<'a> {
 /// # Errors
 /// If the picture cannot be drawn or encoded.
 pub fn learning_curve(data: &CurveData<'_>) -> Result<Picture> {
-    let sheet = Sheet::new(WIDTH_PX, HEIGHT_PX, data.title);
-    let plot = frame(&sheet, data)?;
+    let mut sheet = Sheet::new(WIDTH_PX, HEIGHT_PX, data.title);
+    let plot = frame(&mut sheet, data);
     let place = |window: usize, value: f64| plot.at((window as f64 + 1.0) * data.window_steps as f64, value);
     if let [curve] = data.curves {
-        stroke(&sheet, curve.iter().copied(), place, 2.0, BLUE);
+        stroke(&mut sheet, curve.iter().copied(), place, 2.0, BLUE);
     } else {
         let bands = quartiles(data.curves);
         let edge = |part: usize| bands.iter().enumerate().map(move |(window, band)| (window, band[part]));
         let outline = edge(0).chain(edge(2).rev()).filter(|(_, value)| value.is_finite());
         for curve in data.curves {
-            stroke(&sheet, curve.iter().copied(), place, 1.0, SKY.towards(PAPER, 0.6));
+            stroke(&mut sheet, curve.iter().copied(), place, 1.0, SKY.towards(PAPER, 0.6));
         }
         sheet.area(outline.map(|(window, value)| place(window, value)).collect(), BLUE.thin(0.22));
-        stroke(&sheet, bands.iter().map(|band| band[1]), place, 3.0, BLUE);
-        explain(&sheet, data.curves.len());
+        stroke(&mut sheet, bands.iter().map(|band| band[1]), place, 3.0, BLUE);
+        explain(&mut sheet, data.curves.len());
     }
     if let Some(step) = data.learned_at {
-        mark_learned(&sheet, &plot, step, data.curves.len() > 1);
+        mark_learned(&mut sheet, &plot, step, data.curves.len() > 1);
     }
     sheet.finish()
 }
 
-fn frame(sheet: &Sheet, data: &CurveData<'_>) -> Result<Plot> {
+fn frame(sheet: &mut Sheet, data: &CurveData<'_>) -> Plot {
     let windows = data.curves.iter().map(Vec::len).max().unwrap_or(0);
     let last = (windows as f64 * data.window_steps as f64).max(data.learned_at.unwrap_or(0) as f64);
     let (low, high) = range(data.curves.iter().flatten().copied());
@@ -72,14 +72,14 @@ fn frame(sheet: &Sheet, data: &CurveData<'_>) -> Result<Plot> {
 
 /// Draws values as a line that is broken where one is not finite; a value alone is a dot.
 fn stroke(
-    sheet: &Sheet,
+    sheet: &mut Sheet,
     values: impl Iterator<Item = f64>,
     place: impl Fn(usize, f64) -> Spot,
     width_px: f64,
     ink: super::canvas::Ink,
 ) {
     let mut line = Vec::new();
-    let end = |line: &mut Vec<Spot>| match std::mem::take(line)[..] {
+    let mut end = |line: &mut Vec<Spot>| match std::mem::take(line)[..] {
         [alone] => sheet.disc(alone, width_px + 1.0, ink),
         ref many => sheet.line(many.to_vec(), width_px, ink),
     };
@@ -115,24 +115,24 @@ fn quantile(sorted: &[f64], share: f64) -> f64 {
     low + (high - low) * (at - at.floor())
 }
 
-fn explain(sheet: &Sheet, runs: usize) {
+fn explain(sheet: &mut Sheet, runs: usize) {
     let level = |from: Spot, to: Spot| vec![(from.0, (from.1 + to.1) / 2), (to.0, (from.1 + to.1) / 2)];
     let median = format!("median of {runs} runs");
     legend(
         sheet,
         spot(END_PX, BELOW_TITLE_PX + 4.0),
         &[
-            Entry { sign: &|sheet, from, to| sheet.line(level(from, to), 3.0, BLUE), words: &median },
-            Entry { sign: &|sheet, from, to| sheet.rect(from, to, BLUE.thin(0.22)), words: "quartiles" },
+            Entry { sign: &|sheet: &mut Sheet, from, to| sheet.line(level(from, to), 3.0, BLUE), words: &median },
+            Entry { sign: &|sheet: &mut Sheet, from, to| sheet.rect(from, to, BLUE.thin(0.22)), words: "quartiles" },
             Entry {
-                sign: &|sheet, from, to| sheet.line(level(from, to), 1.0, SKY.towards(PAPER, 0.6)),
+                sign: &|sheet: &mut Sheet, from, to| sheet.line(level(from, to), 1.0, SKY.towards(PAPER, 0.6)),
                 words: "each run",
             },
         ],
     );
 }
 
-fn mark_learned(sheet: &Sheet, plot: &Plot, step: u64, many: bool) {
+fn mark_learned(sheet: &mut Sheet, plot: &Plot, step: u64, many: bool) {
     let (x, _) = plot.at(step as f64, 0.0);
     sheet.line(vec![(x, plot.min.1), (x, plot.max.1)], 1.5, VERMILION);
     let kind = if many { "learned (median)" } else { "learned" };
