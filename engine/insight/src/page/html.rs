@@ -2,7 +2,7 @@
 
 use sha2::{Digest, Sha256};
 
-use super::Document;
+use super::document::Document;
 use crate::report::base64;
 use engine::diagnostic::{Diagnostic, Kind, Result};
 

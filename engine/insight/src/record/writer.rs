@@ -11,13 +11,12 @@ use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 use serde_json::json;
 
-use super::Recording;
-use super::scene::{pose, turned, update};
+use super::recording::Recording;
+use super::scene::{WORLD, pose, turned, update};
 use engine::diagnostic::{Diagnostic, Kind, Result};
 use engine::experiment::{Ledger, Phase, Plan, Playback, Snapshot, Step};
 
-/// The frame of the world, and that of the robot.
-pub(super) const WORLD: &str = "world";
+/// The frames of the robot and of its laser.
 const ROBOT: &str = "robot";
 const LASER: &str = "laser";
 /// What `/step` holds.

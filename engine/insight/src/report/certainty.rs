@@ -2,9 +2,10 @@
 
 use super::axes::BELOW_PX;
 use super::canvas::units;
+use super::picture::{Picture, failed};
+use super::route;
 use super::sheet::{BELOW_TITLE_PX, FRAME, MARGIN_PX, Sheet, spot};
 use super::trajectory::{Floor, LEFT_PX};
-use super::{Picture, failed, route};
 use engine::diagnostic::Result;
 use engine::experiment::Trail;
 

@@ -1,8 +1,8 @@
 //! The learning curve: reinforcement in each window of steps, for one run or for many.
 
-use super::Picture;
 use super::axes::{Axis, BELOW_PX, Plot, axes, number, range};
 use super::canvas::{Align, Spot, Text};
+use super::picture::Picture;
 use super::sheet::{
     BELOW_TITLE_PX, BLUE, Entry, MARGIN_PX, PAPER, SKY, SMALL_PX, Sheet, VERMILION, legend, spot, words,
 };

@@ -1,10 +1,10 @@
 //! One image seen through the pipeline: the image, what each filter made of it, the grid and its state.
 
 use super::canvas::{Ink, Spot, units};
+use super::picture::{Picture, failed};
 use super::sheet::{
     BELOW_TITLE_PX, BLUE, FRAME, LABEL_PX, MARGIN_PX, PAPER, QUIET, SKY, SMALL_PX, Sheet, TEXT, centred, spot, words,
 };
-use super::{Picture, failed};
 use engine::diagnostic::Result;
 use engine::experiment::Snapshot;
 use engine::sensors::observation::Image;

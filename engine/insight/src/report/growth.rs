@@ -1,7 +1,7 @@
 //! How long a step takes under growing workloads: one group of bars for each kind of growth.
 
-use super::Picture;
 use super::canvas::units;
+use super::picture::Picture;
 use super::sheet::{
     BELOW_TITLE_PX, BLUE, FRAME, LABEL_PX, MARGIN_PX, QUIET, SMALL_PX, Sheet, TEXT, centred, fitted, spot, words,
 };

@@ -2,12 +2,13 @@
 
 use super::axes::number;
 use super::canvas::{Ink, Spot, units};
+use super::glyphs;
+use super::picture::Picture;
 use super::route::arrow_head;
 use super::sheet::{
     BELOW_TITLE_PX, BLUE, Entry, FRAME, GRID, MARGIN_PX, PAPER, QUIET, SMALL_PX, Sheet, TEXT, VERMILION, legend, spot,
     words,
 };
-use super::{Picture, glyphs};
 use engine::diagnostic::Result;
 use engine::geometry::Twist;
 

@@ -1,7 +1,7 @@
 //! What a change of the reward changed: each state whose best action is another one, with both motions.
 
-use super::Picture;
 use super::canvas::units;
+use super::picture::Picture;
 use super::policy::{ICON_PX, PolicyState, icon, motion, strength};
 use super::sheet::{BELOW_TITLE_PX, MARGIN_PX, QUIET, SMALL_PX, Sheet, TEXT, centred, spot, words};
 use engine::diagnostic::Result;

@@ -4,7 +4,8 @@ use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 
 use super::canvas::{Canvas, Ink, Mark, Spot, UNITS_PER_PX};
-use super::{failed, glyphs};
+use super::glyphs;
+use super::picture::failed;
 use engine::diagnostic::Result;
 
 /// The canvas as a whole PNG file.

@@ -1,7 +1,8 @@
 //! The paper that every picture is drawn on: colours, sizes of text, and a few strokes.
 
 use super::canvas::{Align, Canvas, Ink, Mark, Spot, Text, units};
-use super::{Picture, glyphs, raster, vector};
+use super::picture::Picture;
+use super::{glyphs, raster, vector};
 use engine::diagnostic::Result;
 
 pub(super) const PAPER: Ink = Ink::hex(0xffffff);

@@ -1,8 +1,8 @@
 //! Where the robot drove: panels of the world from above, such as early and late.
 
-use super::Picture;
 use super::axes::{Axis, BELOW_PX, Plot, axes, range};
 use super::canvas::{Spot, units};
+use super::picture::Picture;
 use super::sheet::{
     BELOW_TITLE_PX, Entry, LABEL_PX, MARGIN_PX, Sheet, TEXT, VERMILION, centred, fitted, legend, spot, words,
 };
