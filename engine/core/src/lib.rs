@@ -7,12 +7,13 @@
 //!                                   \-> reward: the script judges ->/
 //! ```
 //!
-//! `experiment` is the loop around them, `store` and `report` are what a run leaves, `settings`, `diagnostic`, `random`
-//! and `geometry` are what all share. ARCHITECTURE.md says what each room never knows.
+//! `experiment` is the loop around them, `store` and `report` are what a run leaves, `settings`, `diagnostic`, `digest`,
+//! `random` and `geometry` are what all share. ARCHITECTURE.md says what each room never knows.
 
 #![deny(unsafe_code)] // but for filter/native.rs, where libraries are called
 
 pub mod diagnostic;
+pub mod digest;
 pub mod geometry;
 pub mod random;
 pub mod settings;

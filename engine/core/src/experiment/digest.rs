@@ -1,6 +1,7 @@
 //! A hash over everything that a run decided, to compare runs bit for bit.
 
 use super::Step;
+use crate::digest::hex;
 use crate::geometry::Pose;
 use sha2::{Digest, Sha256};
 
@@ -34,14 +35,4 @@ impl StateHash {
         }
         hex(&self.hasher.finalize())
     }
-}
-
-/// Bytes as lower-case hexadecimal digits.
-pub(super) fn hex(bytes: &[u8]) -> String {
-    use std::fmt::Write;
-    bytes.iter().fold(String::with_capacity(bytes.len() * 2), |mut text, byte| {
-        // Writing to a String cannot fail.
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
 }

@@ -1,11 +1,9 @@
 //! Which native libraries may be loaded: none, but those whose digest the user named.
 
-use std::fmt::Write;
 use std::path::Path;
 
-use sha2::{Digest, Sha256};
-
 use crate::diagnostic::{Diagnostic, Kind, Result, printable};
+use crate::digest::Digest;
 
 /// The most bytes that a library or module may have.
 const LARGEST_FILE_BYTES: u64 = 256 << 20;
@@ -13,7 +11,7 @@ const LARGEST_FILE_BYTES: u64 = 256 << 20;
 /// The digests of libraries that may be loaded.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Trust {
-    allowed: Vec<String>,
+    allowed: Vec<Digest>,
 }
 
 impl Trust {
@@ -23,8 +21,8 @@ impl Trust {
     /// If it is anything else; a shortened digest could be met by another file.
     pub fn allow(&mut self, digest: &str) -> Result<()> {
         let digits = digest.strip_prefix("sha256:").unwrap_or("");
-        if digits.len() == 64 && digits.bytes().all(|digit| matches!(digit, b'0'..=b'9' | b'a'..=b'f')) {
-            self.allowed.push(digits.to_owned());
+        if let Ok(digest) = Digest::try_from(digits.to_owned()) {
+            self.allowed.push(digest);
             return Ok(());
         }
         let message = format!("'{}' is not the digest of a library", printable(digest));
@@ -58,9 +56,9 @@ impl Trust {
     /// If it is not allowed: what that would mean, and the exact words that allow it.
     pub(super) fn read(&self, path: &Path) -> Result<(Vec<u8>, String)> {
         let bytes = read(path)?;
-        let digest = sha256(&bytes);
+        let digest = Digest::of(&bytes);
         if self.allowed.contains(&digest) {
-            return Ok((bytes, digest));
+            return Ok((bytes, digest.to_string()));
         }
         let shown = printable(&path.display().to_string());
         let (code, message) = if self.allowed.is_empty() {
@@ -86,15 +84,6 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
         return Diagnostic::new(Kind::Limit, "E-FILTER-SIZE", message).into();
     }
     std::fs::read(path).map_err(failed)
-}
-
-/// SHA-256 in 64 hexadecimal digits.
-pub(super) fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().fold(String::with_capacity(64), |mut digits, byte| {
-        // Writing to a String cannot fail.
-        let _ = write!(digits, "{byte:02x}");
-        digits
-    })
 }
 
 #[cfg(test)]

@@ -5,12 +5,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 use toml::Table;
 
 use super::members::members_from_texts;
 use super::{policy_from_toml, read_stored, toml_error};
 use engine::diagnostic::{Diagnostic, Kind, Result, SourceText, printable};
+use engine::digest::Digest;
 use engine::experiment::{Leg, Member, Plan};
 use engine::filter::Catalogue;
 use engine::geometry::Twist;
@@ -128,7 +128,7 @@ impl TextEntry {
 }
 
 fn sha256(text: &str) -> String {
-    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+    Digest::of(text.as_bytes()).to_string()
 }
 
 /// The text of `run.toml`; `members` are the policies of a combination, none for a behaviour that learns.

@@ -16,10 +16,10 @@ use wasmtime::{
 use super::layout::{FRAME_BYTES, Fault, PARAMETER_BYTES, PLUGIN_BYTES, describe};
 use super::limits::damaged;
 use crate::diagnostic::{Diagnostic, Kind, Result, printable};
+use crate::digest::Digest;
 use crate::filter::catalogue::{Entry, Form};
 use crate::filter::described::Described;
 use crate::filter::running::{Running, check_frames, failed, refused};
-use crate::filter::trust::sha256;
 
 const MEMORY_BYTES: usize = 64 << 20;
 const TABLE_ELEMENTS: usize = 10_000;
@@ -45,7 +45,7 @@ pub(super) fn open(path: &Path, bytes: &[u8]) -> Result<Entry> {
     let descriptor = sandbox.describe()?.check("E-WASM-ABI", path)?;
     let create =
         move |values: &[f64]| -> Result<Box<dyn Running>> { Ok(Box::new(sandbox.create(descriptor, values)?)) };
-    let (path, sha256) = (Some(path.to_owned()), Some(sha256(bytes)));
+    let (path, sha256) = (Some(path.to_owned()), Some(Digest::of(bytes).to_string()));
     Ok(Entry { descriptor, form: Form::Wasm, path, sha256, create: Box::new(create) })
 }
 

@@ -22,9 +22,10 @@ mod read;
 mod stored;
 
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
+use sha2::{Digest as _, Sha256};
 
 use engine::diagnostic::{Diagnostic, Kind, Result};
+use engine::digest::{Digest, hex};
 use engine::experiment::{Ledger, Plan};
 
 pub use read::read_log;
@@ -148,7 +149,7 @@ impl RunLog {
             engine: env!("CARGO_PKG_VERSION").to_owned(),
             behaviour: plan.behaviour.name().to_owned(),
             seed,
-            run_sha256: hex(&Sha256::digest(run.as_bytes())),
+            run_sha256: Digest::of(run.as_bytes()).to_string(),
             record_bytes: self.learning.shape().bytes(),
             rules: RuleEntry::all(plan),
             earlier: earlier.collect(),
@@ -176,10 +177,6 @@ impl RunLog {
 
 fn digest(before: &[u8; DIGEST_BYTES], records: &[u8]) -> [u8; DIGEST_BYTES] {
     Sha256::new().chain_update(before).chain_update(records).finalize().into()
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 fn damaged(message: String) -> Diagnostic {
