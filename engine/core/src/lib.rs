@@ -8,7 +8,7 @@
 //! ```
 //!
 //! `experiment` is the loop around them, `store` and `report` are what a run leaves, `settings`, `diagnostic`, `digest`,
-//! `random` and `geometry` are what all share. ARCHITECTURE.md says what each room never knows.
+//! `stats`, `random` and `geometry` are what all share. ARCHITECTURE.md says what each room never knows.
 
 #![deny(unsafe_code)] // but for filter/native.rs, where libraries are called
 
@@ -17,6 +17,7 @@ pub mod digest;
 pub mod geometry;
 pub mod random;
 pub mod settings;
+pub mod stats;
 
 pub mod world;
 

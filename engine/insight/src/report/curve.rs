@@ -7,6 +7,7 @@ use super::sheet::{
     BELOW_TITLE_PX, BLUE, Entry, MARGIN_PX, PAPER, SKY, SMALL_PX, Sheet, VERMILION, legend, spot, words,
 };
 use engine::diagnostic::Result;
+use engine::stats::Sorted;
 
 const WIDTH_PX: f64 = 1200.0;
 const HEIGHT_PX: f64 = 700.0;
@@ -93,26 +94,15 @@ fn stroke(
     end(&mut line);
 }
 
-/// Lower quartile, median and upper quartile of each window, over the runs that reached it.
+/// Lower quartile, median and upper quartile of each window, over the runs that reached it; NaN where none did.
 fn quartiles(curves: &[Vec<f64>]) -> Vec<[f64; 3]> {
     let windows = curves.iter().map(Vec::len).max().unwrap_or(0);
-    let mut values = Vec::with_capacity(curves.len());
-    let mut bands = Vec::with_capacity(windows);
-    for window in 0..windows {
-        values.clear();
-        values.extend(curves.iter().filter_map(|curve| curve.get(window)).filter(|value| value.is_finite()));
-        values.sort_by(f64::total_cmp);
-        bands.push([0.25, 0.5, 0.75].map(|share| quantile(&values, share)));
-    }
-    bands
-}
-
-/// The value below which a share of the sorted values lies, linear between neighbours; NaN without values.
-fn quantile(sorted: &[f64], share: f64) -> f64 {
-    let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
-    let at = share * last as f64;
-    let (low, high) = (sorted[at.floor() as usize], sorted[at.ceil() as usize]);
-    low + (high - low) * (at - at.floor())
+    let bands = (0..windows).map(|window| {
+        let values = curves.iter().filter_map(|curve| curve.get(window).copied());
+        let values: Sorted = values.filter(|value| value.is_finite()).collect();
+        [0.25, 0.5, 0.75].map(|share| values.quantile(share).unwrap_or(f64::NAN))
+    });
+    bands.collect()
 }
 
 fn explain(sheet: &mut Sheet, runs: usize) {
@@ -152,6 +142,5 @@ mod tests {
     fn quartiles_are_taken_over_the_runs_that_reached_a_window() {
         let curves = [vec![1.0, 7.0], vec![2.0], vec![3.0], vec![4.0], vec![5.0]];
         assert_eq!(quartiles(&curves), [[2.0, 3.0, 4.0], [7.0, 7.0, 7.0]]);
-        assert_eq!(quantile(&[1.0, 2.0], 0.5), 1.5);
     }
 }

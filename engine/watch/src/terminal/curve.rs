@@ -10,6 +10,7 @@ use super::screen::{heading, nothing, write};
 use super::view::View;
 use super::words::{columns, short, ticks, whole};
 use engine::experiment::Phase;
+use engine::stats::Sorted;
 
 /// The shares of the seeds below and above the band.
 const BAND: [f64; 2] = [0.1, 0.9];
@@ -161,11 +162,7 @@ fn quantiles(curves: &[Vec<f64>], share: f64) -> Vec<f64> {
     let longest = curves.iter().map(Vec::len).max().unwrap_or(0);
     (0..longest)
         .filter_map(|window| {
-            let mut values: Vec<f64> = curves.iter().filter_map(|curve| curve.get(window).copied()).collect();
-            values.sort_by(f64::total_cmp);
-            let at = (values.len().checked_sub(1)?) as f64 * share;
-            let (low, high) = (values[at as usize], values[(at as usize + 1).min(values.len() - 1)]);
-            Some(low + (high - low) * at.fract())
+            curves.iter().filter_map(|curve| curve.get(window).copied()).collect::<Sorted>().quantile(share)
         })
         .collect()
 }
