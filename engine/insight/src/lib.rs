@@ -7,9 +7,11 @@
 //! | [`report`] | pictures, CSV, files written whole or not at all |
 //! | [`page`] | a run as one document of data, and the HTML that shows it |
 //! | [`record`] | a run as an MCAP file for Foxglove and Rerun |
+//! | [`words`] | numbers as people read them |
 
 pub mod lint;
 pub mod page;
 pub mod record;
 pub mod report;
 pub mod store;
+pub mod words;

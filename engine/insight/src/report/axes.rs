@@ -2,6 +2,7 @@
 
 use super::canvas::{Align, Spot, Text, units};
 use super::sheet::{FRAME, GRID, LABEL_PX, QUIET, SMALL_PX, Sheet, TEXT, centred, words};
+use crate::words::spaced;
 
 /// Pixels under a plot for its labels.
 pub(super) const BELOW_PX: f64 = 54.0;
@@ -97,36 +98,15 @@ pub(super) fn ticks(low: f64, high: f64, count: usize) -> (Vec<f64>, usize) {
     (ticks.collect(), decimals)
 }
 
-/// A number as people read it: groups of three digits, a true minus sign.
-pub(super) fn number(value: f64, decimals: usize) -> String {
-    if value.abs() >= 1e9 {
-        return format!("{value:.1e}").replace('-', "−");
-    }
-    let plain = format!("{:.decimals$}", value.abs());
-    let (whole, part) = plain.split_at(plain.find('.').unwrap_or(plain.len()));
-    let mut out = String::new();
-    if value < 0.0 && plain.bytes().any(|digit| (b'1'..=b'9').contains(&digit)) {
-        out.push('−');
-    }
-    for (index, digit) in whole.char_indices() {
-        // Four digits are still read at a glance.
-        if index > 0 && whole.len() > 4 && (whole.len() - index) % 3 == 0 {
-            out.push('\u{2009}');
-        }
-        out.push(digit);
-    }
-    out + part
-}
-
 /// Draws axes and grid around the rectangle from `min` to `max`.
 pub(super) fn axes(sheet: &mut Sheet, min: Spot, max: Spot, x: &Axis, y: &Axis) -> Plot {
     let plot = Plot { min, max, x: (x.low, x.high), y: (y.low, y.high) };
     let (x_ticks, x_decimals) = ticks(x.low, x.high, x.ticks);
     let (y_ticks, y_decimals) = ticks(y.low, y.high, y.ticks);
     let columns: Vec<(i32, String)> =
-        x_ticks.iter().map(|tick| (plot.at(*tick, y.low).0, number(*tick, x_decimals))).collect();
+        x_ticks.iter().map(|tick| (plot.at(*tick, y.low).0, spaced(*tick, x_decimals))).collect();
     let rows: Vec<(i32, String)> =
-        y_ticks.iter().map(|tick| (plot.at(x.low, *tick).1, number(*tick, y_decimals))).collect();
+        y_ticks.iter().map(|tick| (plot.at(x.low, *tick).1, spaced(*tick, y_decimals))).collect();
     for (column, _) in &columns {
         sheet.line(vec![(*column, min.1), (*column, max.1)], 1.0, GRID);
     }
@@ -166,14 +146,6 @@ mod tests {
         assert!(small.iter().zip([0.1, 0.2, 0.3, 0.4]).all(|(a, b)| (a - b).abs() < 1e-12), "{small:?}");
         assert_eq!(ticks(0.0, 0.0101, 2), (vec![0.0, 0.01], 2));
         assert_eq!(ticks(0.0, 0.0101, 3).1, 3);
-    }
-
-    #[test]
-    fn numbers_have_groups_and_a_true_minus() {
-        assert_eq!(number(-12_500.0, 0), "−12\u{2009}500");
-        assert_eq!(number(2500.0, 0), "2500");
-        assert_eq!(number(-0.001, 1), "0.0");
-        assert_eq!(number(1.25, 2), "1.25");
     }
 
     #[test]

@@ -1,11 +1,12 @@
 //! The learning curve: reinforcement in each window of steps, for one run or for many.
 
-use super::axes::{Axis, BELOW_PX, Plot, axes, number, range};
+use super::axes::{Axis, BELOW_PX, Plot, axes, range};
 use super::canvas::{Align, Spot, Text};
 use super::picture::Picture;
 use super::sheet::{
     BELOW_TITLE_PX, BLUE, Entry, MARGIN_PX, PAPER, SKY, SMALL_PX, Sheet, VERMILION, legend, spot, words,
 };
+use crate::words::spaced;
 use engine::diagnostic::Result;
 use engine::stats::Sorted;
 
@@ -65,7 +66,7 @@ fn frame(sheet: &mut Sheet, data: &CurveData<'_>) -> Plot {
     let high = if high <= 0.0 && high + (high - low) * 0.5 >= 0.0 { 0.0 } else { high + room };
     let low = if low >= 0.0 && low - (high - low) * 0.5 <= 0.0 { 0.0 } else { low - room };
     let x = Axis { title: "step".to_owned(), low: 0.0, high: last.max(1.0), room_px: BELOW_PX, ticks: 9 };
-    let windows = number(data.window_steps as f64, 0);
+    let windows = spaced(data.window_steps as f64, 0);
     let y = Axis { title: format!("reinforcement per {windows} steps"), low, high, room_px: LEFT_PX, ticks: 8 };
     let min = spot(MARGIN_PX + LEFT_PX, BELOW_TITLE_PX + 22.0);
     axes(sheet, min, spot(END_PX, HEIGHT_PX - MARGIN_PX / 2.0 - BELOW_PX), &x, &y)
@@ -130,7 +131,7 @@ fn mark_learned(sheet: &mut Sheet, plot: &Plot, step: u64, many: bool) {
     let right = x < plot.min.0 + (plot.max.0 - plot.min.0) * 3 / 4;
     let away = if right { 40 } else { -40 };
     let text =
-        words(&format!("{kind}: step {}", number(step as f64, 0)), (x + away, plot.max.1 - 80), SMALL_PX, VERMILION);
+        words(&format!("{kind}: step {}", spaced(step as f64, 0)), (x + away, plot.max.1 - 80), SMALL_PX, VERMILION);
     sheet.text(Text { along: if right { Align::Start } else { Align::End }, ..text });
 }
 

@@ -1,6 +1,5 @@
 //! The learned table on one page: each state as a small grid, with the motion that the robot prefers there.
 
-use super::axes::number;
 use super::canvas::{Ink, Spot, units};
 use super::glyphs;
 use super::picture::Picture;
@@ -9,6 +8,7 @@ use super::sheet::{
     BELOW_TITLE_PX, BLUE, Entry, FRAME, GRID, MARGIN_PX, PAPER, QUIET, SMALL_PX, Sheet, TEXT, VERMILION, legend, spot,
     words,
 };
+use crate::words::three_figures;
 use engine::diagnostic::Result;
 use engine::geometry::Twist;
 
@@ -103,18 +103,9 @@ pub(super) fn icon(sheet: &mut Sheet, min: Spot, (rows, columns): (usize, usize)
     let name = if state.visits == 0 { QUIET } else { TEXT };
     let number = words(&state.state.to_string(), (min.0, max.1 + units(13.0)), SMALL_PX, name);
     let after = (glyphs::width(&number.words, number.em, false) + units(10.0)).max(units(30.0));
-    let below = if state.visits == 0 { "not seen".to_owned() } else { short(state.value) };
+    let below = if state.visits == 0 { "not seen".to_owned() } else { three_figures(state.value) };
     sheet.text(words(&below, (min.0 + after, number.at.1), SMALL_PX, QUIET));
     sheet.text(number);
-}
-
-/// A value in about three figures.
-fn short(value: f64) -> String {
-    match value.abs() {
-        v if v >= 100.0 => number(value, 0),
-        v if v >= 10.0 => number(value, 1),
-        _ => number(value, 2),
-    }
 }
 
 /// The way that the robot would take in some time, from `foot` upwards: length tells speed, bend the turn.

@@ -7,11 +7,12 @@ use engine::diagnostic::{Diagnostic, Kind, Result, all_codes, code_page, excerpt
 use engine::experiment::{Phase, Plan, Playback, RuleReasons, StepReasons};
 use insight::report::{FrameData, FramePanel, Picture, frame};
 use insight::store::{RecordedRun, StoredRun};
+use insight::words::short;
 use serde::Serialize;
 
 use super::folder::create;
 use super::sources::catalogue;
-use super::words::{fact, icon, motion, short};
+use super::words::{fact, icon, motion};
 use crate::cli::ExplainArguments;
 use crate::console::{Console, ConsoleError};
 

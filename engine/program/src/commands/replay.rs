@@ -9,11 +9,12 @@ use engine::experiment::{
 use engine::learner::Carry;
 use engine::robot::SimulatedRobot;
 use insight::store::{Decider, RecordedRun, RunLog, StoredRun};
+use insight::words::short;
 use serde::Serialize;
 
 use super::sources::catalogue;
 use super::stop::{INTERRUPTED, on_ctrl_c};
-use super::words::{direction, motion, short};
+use super::words::{direction, motion};
 use crate::cli::ReplayArguments;
 use crate::console::{Console, ConsoleError};
 

@@ -9,11 +9,12 @@ use engine::learner::Policy;
 use engine::reward::Behaviour;
 use insight::report::{PolicyDiffData, PolicyState, StateChange, policy_diff};
 use insight::store::{RecordedRun, StoredRun};
+use insight::words::short;
 use serde::Serialize;
 
 use super::folder::{create, write_json};
 use super::sources::catalogue;
-use super::words::{icon, motion, short, signed};
+use super::words::{icon, motion, signed};
 use crate::cli::RescoreArguments;
 use crate::console::{Console, ConsoleError};
 

@@ -8,9 +8,10 @@ use super::dots::{Dot, Dots, Rank};
 use super::ink::Ink;
 use super::screen::{heading, nothing, write};
 use super::view::View;
-use super::words::{columns, short, ticks, whole};
+use super::words::{columns, ticks};
 use engine::experiment::Phase;
 use engine::stats::Sorted;
+use insight::words::{typeset, whole};
 
 /// The shares of the seeds below and above the band.
 const BAND: [f64; 2] = [0.1, 0.9];
@@ -124,7 +125,7 @@ fn signs(view: &View, seeds: usize, before: bool, wide: bool) -> Vec<Span<'stati
 fn label_y(axes: &Axes, plot: Rect, buffer: &mut Buffer, dots: &mut Dots) {
     for at in ticks(axes.low, axes.high, usize::from(plot.height / 3).max(2)) {
         let y = axes.y(at);
-        let text = short(at);
+        let text = typeset(at);
         let width = (columns(&text) as u16).min(LEFT - 1);
         let row = plot.y + (y / 4.0) as u16;
         let place = Rect { x: plot.x - 1 - width, y: row.min(plot.y + plot.height - 1), width, height: 1 };
