@@ -25,7 +25,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("record", &[]),
     ("folder", &["store", "lint", "report", "page"]),
 ];
-const SHARED: &[&str] = &["geometry", "random", "saved", "settings", "diagnostic"];
+const SHARED: &[&str] = &["geometry", "random", "saved", "settings", "diagnostic", "digest", "stats"];
 /// Words of the clock and of chance, and who may say them.
 const ONLY_IN: &[(&str, &[&str])] = &[
     // The room of filters only waits for a worker, with a deadline; the live page for people and files.
@@ -37,7 +37,7 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("Expr::", &["script"]),
     ("Stmt::", &["script"]),
     ("parry3d", &["world"]),
-    ("plotters", &["report"]),
+    ("skrifa", &["report"]),
     ("HashMap", &[]),
     ("thread_rng", &[]),
     (".mul_add(", &[]),

@@ -7,16 +7,18 @@
 //!                                   \-> judge: the rules of the script ->/
 //! ```
 //!
-//! `experiment` is the loop around them, `store` and `report` are what a run leaves, `settings`, `diagnostic`, `random`
-//! and `geometry` are what all share. ARCHITECTURE.md says what each room never knows.
+//! `experiment` is the loop around them, `store` and `report` are what a run leaves, `settings`, `diagnostic`, `digest`,
+//! `stats`, `random` and `geometry` are what all share. ARCHITECTURE.md says what each room never knows.
 
 #![deny(unsafe_code)] // but for filter/native.rs, where libraries are called
 
 pub mod diagnostic;
+pub mod digest;
 pub mod geometry;
 pub mod random;
 pub mod saved;
 pub mod settings;
+pub mod stats;
 
 pub mod world;
 

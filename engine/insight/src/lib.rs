@@ -8,6 +8,7 @@
 //! | [`page`] | a run as one document of data, and the HTML that shows it |
 //! | [`folder`] | a run's folder, written |
 //! | [`record`] | a run as an MCAP file for Foxglove and Rerun |
+//! | [`words`] | numbers as people read them |
 
 pub mod folder;
 pub mod lint;
@@ -15,3 +16,4 @@ pub mod page;
 pub mod record;
 pub mod report;
 pub mod store;
+pub mod words;

@@ -10,6 +10,7 @@ use base64::engine::general_purpose::STANDARD;
 use super::author::PICTURE;
 use super::{Claim, Evidence, Pack, Signature, TrustStore};
 use engine::diagnostic::{Diagnostic, Result, printable};
+use insight::words::bounded;
 
 /// The largest picture that is shown, bytes.
 const MAX_PICTURE_BYTES: usize = 4 << 20;
@@ -142,7 +143,7 @@ fn write_curve(page: &mut String, evidence: &Evidence) -> std::fmt::Result {
     for value in [lowest, highest, 0.0] {
         // The line of zero needs no number where one of the ends is as good as there.
         if labelled.iter().all(|other| (y(*other) - y(value)).abs() >= LABEL) {
-            writeln!(page, "<text x=\"-4\" y=\"{:.1}\" text-anchor=\"end\">{}</text>", y(value) + 4.0, short(value))?;
+            writeln!(page, "<text x=\"-4\" y=\"{:.1}\" text-anchor=\"end\">{}</text>", y(value) + 4.0, bounded(value))?;
             labelled.push(value);
         }
     }
@@ -158,11 +159,6 @@ fn write_curve(page: &mut String, evidence: &Evidence) -> std::fmt::Result {
     writeln!(page, "<text x=\"{width}\" y=\"{label}\" text-anchor=\"end\">{} steps</text>", evidence.steps)?;
     page.push_str("</svg></figure>\n");
     Ok(())
-}
-
-/// A number beside a curve, short whatever a stranger claims.
-fn short(value: f64) -> String {
-    if value.abs() < 1e5 { format!("{value:.0}") } else { format!("{value:.0e}") }
 }
 
 fn write_figures(page: &mut String, evidence: &Evidence) -> std::fmt::Result {

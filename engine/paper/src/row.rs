@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use insight::words::with_commas;
+
 use super::campaign::{JobResult, Measured, Options};
 use super::claims::Claim;
 use super::commands::command;
@@ -161,17 +163,7 @@ pub(super) fn shown(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return "never".to_owned();
     }
-    let plain = format!("{:.decimals$}", value.abs());
-    let (whole, part) = plain.split_at(plain.find('.').unwrap_or(plain.len()));
-    let is_zero = plain.bytes().all(|digit| !(b'1'..=b'9').contains(&digit));
-    let mut out = if value < 0.0 && !is_zero { "−".to_owned() } else { String::new() };
-    for (index, digit) in whole.char_indices() {
-        if index > 0 && (whole.len() - index).is_multiple_of(3) {
-            out.push(',');
-        }
-        out.push(digit);
-    }
-    out + part
+    with_commas(value, decimals)
 }
 
 fn reason(claim: &Claim, ours: &Numbers, reference: Option<&Numbers>, measured: &Measured) -> String {

@@ -1,5 +1,6 @@
 //! Verdicts: computed from numbers by a rule that stands beside the claim.
 
+use engine::stats::Sorted;
 use serde::Serialize;
 
 /// What came of a claim.
@@ -82,10 +83,8 @@ impl Spread {
     /// The value that this share of the seeds stays below; the upper one of two in the middle. 0 to 1.
     #[must_use]
     pub fn quantile(&self, share: f64) -> f64 {
-        let mut sorted = self.values.clone();
-        sorted.sort_by(f64::total_cmp);
-        let at = (share * sorted.len() as f64).floor() as usize;
-        sorted[at.min(sorted.len() - 1)]
+        // There is at least one value.
+        self.values.iter().copied().collect::<Sorted>().upper_quantile(share).unwrap_or(f64::NAN)
     }
 
     /// The upper median.

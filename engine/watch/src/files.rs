@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use notify::{EventKind, RecommendedWatcher, RecursiveMode, Watcher};
-use sha2::{Digest, Sha256};
 
 use engine::diagnostic::{Diagnostic, Result};
+use engine::digest::Digest;
 use engine::filter::is_filter_file;
 
 /// A filter is linked in many writes; it is finished once it has not changed for so long.
@@ -33,16 +33,14 @@ pub(super) struct Files {
 #[derive(Debug, Default)]
 struct Contents {
     /// Each with the digest of what it held last; none of a file that cannot be read.
-    files: BTreeMap<PathBuf, Option<Hash>>,
+    files: BTreeMap<PathBuf, Option<Digest>>,
     /// Folders whose filters count, whichever they are.
     filter_folders: BTreeSet<PathBuf>,
     /// The filters in them as they were when they were last finished.
-    finished: BTreeMap<PathBuf, Hash>,
+    finished: BTreeMap<PathBuf, Digest>,
     /// What they held at the last look and since when, if that is something else.
-    unfinished: Option<(Instant, BTreeMap<PathBuf, Hash>)>,
+    unfinished: Option<(Instant, BTreeMap<PathBuf, Digest>)>,
 }
-
-type Hash = [u8; 32];
 
 impl Files {
     /// Calls `changed` whenever anything in a watched folder was written.
@@ -131,15 +129,15 @@ impl Contents {
     }
 
     /// The filters in the folders, those that can be read.
-    fn filters(&self) -> BTreeMap<PathBuf, Hash> {
+    fn filters(&self) -> BTreeMap<PathBuf, Digest> {
         let entries = self.filter_folders.iter().filter_map(|folder| std::fs::read_dir(folder).ok());
         let paths = entries.flatten().flatten().map(|entry| entry.path()).filter(|path| is_filter_file(path));
         paths.filter_map(|path| digest(&path).map(|digest| (path, digest))).collect()
     }
 }
 
-fn digest(file: &Path) -> Option<Hash> {
-    std::fs::read(file).ok().map(|content| Sha256::digest(content).into())
+fn digest(file: &Path) -> Option<Digest> {
+    std::fs::read(file).ok().map(|content| Digest::of(&content))
 }
 
 fn failed(error: &notify::Error) -> Box<Diagnostic> {

@@ -23,6 +23,7 @@ use super::guard::{Guard, Refusal, read_head};
 use super::relearn::Asker;
 use super::socket;
 use engine::diagnostic::{Diagnostic, Result};
+use engine::digest::hex;
 use engine::experiment::Phase;
 use insight::page::{Document, Page, Shot, page, shot_of};
 
@@ -77,7 +78,7 @@ pub fn listen(board: Arc<Board>, asker: Asker, port: u16) -> Result<Address> {
     };
     let mut random = [0; 16];
     getrandom::fill(&mut random).map_err(|error| limit("E-WATCH-SERVER", format!("cannot make a token: {error}")))?;
-    let token: String = random.iter().map(|byte| format!("{byte:02x}")).collect();
+    let token = hex(&random);
     let url = format!("http://127.0.0.1:{port}/?token={token}");
     let guard = Arc::new(Guard::new(token, port));
     let shared = Shared { board, asker, guard, page: Arc::new(page(None)?), player: Arc::new(Semaphore::new(1)) };

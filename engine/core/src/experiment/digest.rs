@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::{Cycle, Observer, Step};
+use crate::digest::hex;
 use crate::geometry::Pose;
 use crate::learner::Learner;
 use crate::robot::Robot;
@@ -48,14 +49,4 @@ impl<R: Robot> Observer<R> for StateHash {
         self.step(step, cycle.robot().whereabouts().unwrap_or_default().pose);
         ControlFlow::Continue(())
     }
-}
-
-/// Bytes as lower-case hexadecimal digits.
-pub(super) fn hex(bytes: &[u8]) -> String {
-    use std::fmt::Write;
-    bytes.iter().fold(String::with_capacity(bytes.len() * 2), |mut text, byte| {
-        // Writing to a String cannot fail.
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
 }

@@ -2,8 +2,8 @@
 
 use sha2::{Digest, Sha256};
 
-use super::digest::hex;
 use super::{Ledger, Plan};
+use crate::digest::hex;
 
 /// Bytes of a digest.
 pub const DIGEST_BYTES: usize = 32;

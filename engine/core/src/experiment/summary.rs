@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::truth::{Spells, Truth};
 use super::{CombinationFigures, Learned, Plan, Tally, TestRun, WINDOW_STEPS};
+use crate::stats::Sorted;
 
 /// Reinforcement of a window from which it counts as learned.
 const GOOD_WINDOW: f64 = -1.0;
@@ -125,7 +126,7 @@ impl TestFigures {
             standing: share(spells.standing),
             circling: share(spells.circling),
             backwards: net_route_m.map(|_| share(spells.backwards)),
-            prey_distance_m: median(&prey_m.iter().map(|distance| f64::from(*distance)).collect::<Vec<_>>()),
+            prey_distance_m: prey_m.iter().map(|distance| f64::from(*distance)).collect::<Sorted>().upper_median(),
             does_task: net_route_m.map(|net_m| net_m.abs() / seconds >= TASK_SPEED_M_PER_S),
         }
     }
@@ -228,9 +229,9 @@ impl Spread {
     /// The spread of at least one seed.
     #[must_use]
     pub fn new(seeds: Vec<Summary>) -> Self {
-        let figures = |of: &dyn Fn(&mut Vec<f64>, bool) -> f64| {
+        let figures = |of: &dyn Fn(Sorted, bool) -> Option<f64>| {
             let pick = |worst_is_high: bool, value: &dyn Fn(&Summary) -> f64| {
-                of(&mut seeds.iter().map(value).collect(), worst_is_high)
+                of(seeds.iter().map(value).collect(), worst_is_high).unwrap_or(f64::NAN)
             };
             let learned_at = pick(true, &|seed| seed.learned_at.map_or(f64::INFINITY, |step| step as f64));
             // Which way round is the script's affair.
@@ -245,16 +246,8 @@ impl Spread {
                 spinning: pick(true, &|seed| seed.test.spinning),
             }
         };
-        let sorted = |values: &mut Vec<f64>| values.sort_by(f64::total_cmp);
-        let median = figures(&|values, _| {
-            sorted(values);
-            values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
-        });
-        let worst = figures(&|values, worst_is_high| {
-            sorted(values);
-            let worst = if worst_is_high { values.last() } else { values.first() };
-            worst.copied().unwrap_or(f64::NAN)
-        });
+        let median = figures(&|values, _| values.upper_median());
+        let worst = figures(&|values, worst_is_high| values.upper_quantile(if worst_is_high { 1.0 } else { 0.0 }));
         let (behaviour, world) =
             seeds.first().map_or_else(Default::default, |seed| (seed.behaviour.clone(), seed.world.clone()));
         let converged = seeds
@@ -270,13 +263,6 @@ impl Spread {
 pub fn learned_at(curve: &[f64]) -> Option<u64> {
     let good = |windows: &[f64]| windows.iter().all(|window| *window >= GOOD_WINDOW);
     curve.windows(GOOD_WINDOWS).position(good).map(|index| index as u64 * WINDOW_STEPS)
-}
-
-/// The upper median; `None` of nothing.
-fn median(values: &[f64]) -> Option<f64> {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied()
 }
 
 #[cfg(test)]

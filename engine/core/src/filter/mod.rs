@@ -9,7 +9,6 @@ mod conformance;
 #[cfg(any(feature = "native-filters", feature = "wasm"))]
 mod described;
 #[cfg(any(feature = "native-filters", feature = "wasm"))]
-mod digest;
 mod entry;
 mod law;
 mod native;

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::diagnostic::{Diagnostic, Result, printable};
+use crate::digest::Digest;
 
 /// The most bytes that a library or module may have.
 const LARGEST_FILE_BYTES: u64 = 256 << 20;
@@ -10,7 +11,7 @@ const LARGEST_FILE_BYTES: u64 = 256 << 20;
 /// The digests of libraries that may be loaded.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Trust {
-    allowed: Vec<String>,
+    allowed: Vec<Digest>,
 }
 
 impl Trust {
@@ -20,8 +21,8 @@ impl Trust {
     /// If it is anything else; a shortened digest could be met by another file.
     pub fn allow(&mut self, digest: &str) -> Result<()> {
         let digits = digest.strip_prefix("sha256:").unwrap_or("");
-        if digits.len() == 64 && digits.bytes().all(|digit| matches!(digit, b'0'..=b'9' | b'a'..=b'f')) {
-            self.allowed.push(digits.to_owned());
+        if let Ok(digest) = Digest::try_from(digits.to_owned()) {
+            self.allowed.push(digest);
             return Ok(());
         }
         let message = format!("'{}' is not the digest of a library", printable(digest));
@@ -49,10 +50,10 @@ impl Trust {
         Ok(())
     }
 
-    /// Whether a library with this digest, 64 hexadecimal digits, may be loaded.
+    /// Whether a library with this digest may be loaded.
     #[must_use]
-    pub fn allows(&self, digest: &str) -> bool {
-        self.allowed.iter().any(|allowed| allowed == digest)
+    pub fn allows(&self, digest: &Digest) -> bool {
+        self.allowed.contains(digest)
     }
 
     /// Whether no library at all may be loaded.

@@ -15,6 +15,7 @@ use super::q_table::best_of;
 use super::{Policy, Softmax};
 use crate::random::Random;
 use crate::settings::{CombineSettings, CombineWay, LearnerSettings};
+use crate::stats::Sorted;
 
 /// Two or more policies over the same actions, each with states of its own.
 #[derive(Debug, Clone)]
@@ -57,7 +58,8 @@ impl Combined {
             let divisor = if settings.scaled { deviation(policy) } else { 1.0 };
             let row = |values: &[f64]| {
                 let (best, greatest) = best_of(values);
-                let cares = greatest - median(values) >= settings.margin;
+                let median = values.iter().copied().collect::<Sorted>().midpoint_median().unwrap_or(0.0);
+                let cares = greatest - median >= settings.margin;
                 let values = if by_priority { values.to_vec() } else { mean_free(values, divisor) };
                 Row { values, best, cares }
             };
@@ -128,18 +130,6 @@ fn mean(values: &[f64]) -> f64 {
 fn mean_free(values: &[f64], divisor: f64) -> Vec<f64> {
     let mean = mean(values);
     values.iter().map(|value| (value - mean) / divisor).collect()
-}
-
-/// Half-way between the two middle values of an even number.
-fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let middle = sorted.len() / 2;
-    match (sorted.get(middle.wrapping_sub(1)), sorted.get(middle)) {
-        (Some(below), Some(above)) if sorted.len().is_multiple_of(2) => f64::midpoint(*below, *above),
-        (_, Some(middle)) => *middle,
-        _ => 0.0,
-    }
 }
 
 /// Root mean square of the mean-free values of all known states; 1 if they are all equal.
@@ -227,11 +217,5 @@ mod tests {
     fn a_sum_of_nothing_prefers_nothing() {
         let policies = [policy(&[&[]]), policy(&[&[]])];
         assert_eq!(decide(&mut combined(&policies, CombineWay::Sum, 0.0, false), &[0, 0]).preferred, None);
-    }
-
-    #[test]
-    fn the_median_of_an_even_number_lies_between() {
-        assert_eq!(median(&[4.0, 1.0, 3.0, 2.0]), 2.5);
-        assert_eq!(median(&[3.0, 1.0, 2.0]), 2.0);
     }
 }

@@ -1,6 +1,7 @@
 //! Numbers that no fact can be compared with: centimetres for metres, degrees for radians, percent for shares.
 
 use super::Finding;
+use crate::words::short;
 use engine::experiment::Plan;
 use engine::script::Compared;
 
@@ -76,9 +77,4 @@ fn reach(plan: &Plan, compared: &Compared) -> Option<Reach> {
             Reach { low, high, unit: " m", whose: "the laser's beams" }
         }
     })
-}
-
-fn short(value: f64) -> String {
-    let text = format!("{value:.3}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }

@@ -1,6 +1,7 @@
 //! Whether cheating pays: the cheapest cheat against driving on without a failure.
 
 use super::{Exploit, Exploits, Finding};
+use crate::words::rounded;
 use engine::experiment::{Plan, WINDOW_STEPS};
 
 /// A cheat that is brought back more often than this in 1,000 steps is none.
@@ -46,7 +47,7 @@ pub(super) fn sentence(cheat: Option<&Exploit>, verdict: Verdict, honest_per_400
     };
     let (name, earned) = (&cheat.behaviour, figure(cheat.reward_per_400));
     let speed = match cheat.net_m_per_s {
-        Some(net) => format!("a net {:.2} m/s along the route", positive_zero(net, 100.0)),
+        Some(net) => format!("a net {:.2} m/s along the route", rounded(net, 100.0)),
         None => format!("{:.2} m/s", cheat.speed_m_per_s),
     };
     let cost = match cheat.failures_per_1000 {
@@ -90,12 +91,7 @@ pub(super) fn check(plan: &Plan, exploits: &Exploits, findings: &mut Vec<Finding
 
 /// At most one place, and none where it is 0.
 fn figure(value: f64) -> String {
-    positive_zero(value, 10.0).to_string()
-}
-
-/// Rounded to one part in `parts`; what rounds to 0 has no sign.
-fn positive_zero(value: f64, parts: f64) -> f64 {
-    (value * parts).round() / parts + 0.0
+    rounded(value, 10.0).to_string()
 }
 
 #[cfg(test)]

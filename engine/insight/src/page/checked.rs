@@ -2,7 +2,6 @@
 
 use serde::Serialize;
 
-use super::Document;
 use crate::lint::{Exploits, Report, Severity};
 
 /// Something that a check of the script found.
@@ -22,7 +21,7 @@ pub struct Finding {
     pub help: Option<String>,
 }
 
-/// What trying the behaviour out came to; its findings stand in [`Document::findings`].
+/// What trying the behaviour out came to; its findings stand in [`Document::findings`](super::Document::findings).
 #[derive(Debug, Clone, Serialize)]
 pub struct Checked {
     /// Steps that were tried.
@@ -50,13 +49,5 @@ impl From<&crate::lint::Finding> for Finding {
 impl From<&Report> for Checked {
     fn from(report: &Report) -> Self {
         Self { steps: report.steps, left_out: report.left_out, exploits: report.exploits.clone() }
-    }
-}
-
-impl Document {
-    /// The same with what a full check found, instead of what reading the script did.
-    #[must_use]
-    pub fn with_check(self, report: &Report) -> Self {
-        Self { findings: report.findings.iter().map(Finding::from).collect(), checked: Some(report.into()), ..self }
     }
 }

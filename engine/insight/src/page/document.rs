@@ -2,8 +2,12 @@
 
 use serde::Serialize;
 
+use super::checked::{Checked, Finding};
+use super::ground::Ground;
 use super::seed::{SeedData, SeedView};
-use super::{Checked, Finding, Ground, Moments, Shot};
+use super::shot::Shot;
+use super::track::{Moments, ScanShape};
+use crate::lint::{self, Report};
 use engine::diagnostic::Result;
 use engine::experiment::{Plan, WINDOW_STEPS};
 use engine::learner::Carry;
@@ -72,23 +76,6 @@ pub struct Swap {
     pub step: u64,
     /// What became of the table.
     pub table: Carry,
-}
-
-/// How the laser's beams stand in a track.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct ScanShape {
-    /// Beams of the laser.
-    pub beams: usize,
-    /// Every so many of them are kept, from beam 0 on.
-    pub every: usize,
-    /// How many are kept.
-    pub kept: usize,
-    /// The longest range, metres.
-    pub max_range_m: f64,
-    /// Place of the laser ahead of the robot's centre, metres.
-    pub forward_m: f64,
-    /// How far it looks down, radians.
-    pub tilt_rad: f64,
 }
 
 /// One rule.
@@ -200,9 +187,15 @@ impl Document {
             settings: settings(plan),
             seeds: Vec::new(),
             shots: Vec::new(),
-            findings: crate::lint::read(plan).iter().map(Finding::from).collect(),
+            findings: lint::read(plan).iter().map(Finding::from).collect(),
             checked: None,
         })
+    }
+
+    /// This document with what a full check found, instead of what reading the script did.
+    #[must_use]
+    pub fn with_check(self, report: &Report) -> Self {
+        Self { findings: report.findings.iter().map(Finding::from).collect(), checked: Some(report.into()), ..self }
     }
 
     fn first_shown(&mut self, first: Option<usize>) {

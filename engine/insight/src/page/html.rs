@@ -1,10 +1,9 @@
 //! The page itself: the files of `web/`, one document of data, and a policy that lets nothing else run or load.
 
-use sha2::{Digest, Sha256};
-
-use super::Document;
+use super::document::Document;
 use crate::report::base64;
 use engine::diagnostic::{Diagnostic, Result};
+use engine::digest::Digest;
 
 const HTML: &str = include_str!("web/index.html");
 const STYLE: &str = include_str!("web/style.css");
@@ -70,7 +69,7 @@ pub fn page(document: Option<&Document>) -> Result<Page> {
 }
 
 fn digest(text: &str) -> String {
-    base64(&Sha256::digest(text.as_bytes()))
+    base64(Digest::of(text.as_bytes()).bytes())
 }
 
 fn escaped(text: &str) -> String {

@@ -28,12 +28,12 @@ mod shot;
 mod track;
 
 pub use checked::{Checked, Finding};
-pub use document::{Document, RuleView, ScanShape, SettingView};
+pub use document::{Document, RuleView, SettingView};
 pub use ground::{Ground, MoverOutline, Outline};
 pub use html::{Page, page};
 pub use seed::{SeedData, SeedView, StateRow};
 pub use shot::{Shot, ShotMaker, StagePicture, shot_of};
-pub use track::{MOST_TRACK_STEPS, Moments, MoverTrack, Track};
+pub use track::{MOST_TRACK_STEPS, Moments, MoverTrack, ScanShape, Track};
 
 #[cfg(test)]
 mod tests;

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::track::Source;
-use super::{Moments, ScanShape, Shot, Track};
+use super::shot::Shot;
+use super::track::{Moments, ScanShape, Source, Track};
 use engine::diagnostic::Result;
 use engine::experiment::{Ledger, Phase, Plan, Tally, TestFigures, learned_at};
 use engine::learner::Policy;

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{ScanShape, Shot, ShotMaker};
+use super::shot::{Shot, ShotMaker};
 use crate::report::base64;
 use engine::diagnostic::Result;
 use engine::experiment::{Ledger, Phase, Plan, Playback, StepReasons};
@@ -22,6 +22,23 @@ pub struct Moments {
     pub scans: bool,
     /// How many seeds bring their steps, from the first on; without it, the worst and then as many as fit.
     pub seeds: Option<usize>,
+}
+
+/// How the laser's beams stand in a track.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ScanShape {
+    /// Beams of the laser.
+    pub beams: usize,
+    /// Every so many of them are kept, from beam 0 on.
+    pub every: usize,
+    /// How many are kept.
+    pub kept: usize,
+    /// The longest range, metres.
+    pub max_range_m: f64,
+    /// Place of the laser ahead of the robot's centre, metres.
+    pub forward_m: f64,
+    /// How far it looks down, radians.
+    pub tilt_rad: f64,
 }
 
 /// The steps of one phase; the fields are described in [`super`].

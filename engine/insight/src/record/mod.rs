@@ -16,21 +16,13 @@ use std::path::Path;
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Ledger, Phase, Plan};
 
+mod recording;
 #[cfg(feature = "mcap")]
 mod scene;
 #[cfg(feature = "mcap")]
 mod writer;
 
-/// What was recorded.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Recording {
-    /// Steps of learning and of the test.
-    pub steps: u64,
-    /// Images of the camera.
-    pub images: u64,
-    /// Size of the file.
-    pub bytes: u64,
-}
+pub use recording::Recording;
 
 /// Writes the phases of one seed, one after the other, with an image every `image_every` steps.
 ///

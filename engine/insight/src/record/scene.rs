@@ -7,11 +7,14 @@ use foxglove::messages::{
 
 use engine::world::scene::{SceneParts, Shape, Solid};
 
+/// The frame of the world.
+pub(super) const WORLD: &str = "world";
+
 /// All solids of a scene as one entity of the frame `world`.
 pub(super) fn update(parts: &SceneParts, timestamp: Timestamp) -> SceneUpdate {
     let mut entity = SceneEntity {
         timestamp: Some(timestamp),
-        frame_id: super::writer::WORLD.to_owned(),
+        frame_id: WORLD.to_owned(),
         id: "world".to_owned(),
         ..SceneEntity::default()
     };

@@ -16,8 +16,7 @@ use super::scene::{pose, turned, update};
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Ledger, Phase, Plan, Playback, Snapshot, Step};
 
-/// The frame of the world, and that of the robot.
-pub(super) const WORLD: &str = "world";
+/// The frames of the robot and of its laser.
 const ROBOT: &str = "robot";
 const LASER: &str = "laser";
 /// What `/step` holds.

@@ -1,18 +1,14 @@
-//! Axes with ticks at round numbers, drawn by plotters, and the map from values to places.
+//! Axes with a grid and ticks at round numbers, and the map from values to places.
 
-use std::rc::Rc;
-
-use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
-use plotters::prelude::*;
-
-use super::canvas::{Ink, Spot, UNITS_PER_PX, units};
-use super::failed;
-use super::glyphs;
-use super::sheet::{FRAME, GRID, LABEL_PX, QUIET, SMALL_PX, Sheet, TEXT};
-use engine::diagnostic::Result;
+use super::canvas::{Align, Spot, Text, units};
+use super::sheet::{FRAME, GRID, LABEL_PX, QUIET, SMALL_PX, Sheet, TEXT, centred, words};
+use crate::words::spaced;
 
 /// Pixels under a plot for its labels.
 pub(super) const BELOW_PX: f64 = 54.0;
+/// Length of a tick, and from the axis to the number beside it, pixels.
+const TICK_PX: f64 = 5.0;
+const NUMBER_PX: f64 = 10.0;
 
 /// One axis.
 #[derive(Debug, Clone)]
@@ -102,100 +98,39 @@ pub(super) fn ticks(low: f64, high: f64, count: usize) -> (Vec<f64>, usize) {
     (ticks.collect(), decimals)
 }
 
-/// A number as people read it: groups of three digits, a true minus sign.
-pub(super) fn number(value: f64, decimals: usize) -> String {
-    if value.abs() >= 1e9 {
-        return format!("{value:.1e}").replace('-', "−");
-    }
-    let plain = format!("{:.decimals$}", value.abs());
-    let (whole, part) = plain.split_at(plain.find('.').unwrap_or(plain.len()));
-    let mut out = String::new();
-    if value < 0.0 && plain.bytes().any(|digit| (b'1'..=b'9').contains(&digit)) {
-        out.push('−');
-    }
-    for (index, digit) in whole.char_indices() {
-        // Four digits are still read at a glance.
-        if index > 0 && whole.len() > 4 && (whole.len() - index) % 3 == 0 {
-            out.push('\u{2009}');
-        }
-        out.push(digit);
-    }
-    out + part
-}
-
-/// The colour as plotters takes it.
-fn colour(ink: Ink) -> RGBColor {
-    let [red, green, blue] = ink.rgb;
-    RGBColor(red, green, blue)
-}
-
-/// An axis as plotters reads it. Its own axes choose ticks with the logarithm of the platform, which may differ.
-struct Scale {
-    low: f64,
-    high: f64,
-    ticks: Vec<f64>,
-    decimals: usize,
-}
-
-impl Scale {
-    fn new(axis: &Axis) -> Self {
-        let (ticks, decimals) = ticks(axis.low, axis.high, axis.ticks);
-        Self { low: axis.low, high: axis.high, ticks, decimals }
-    }
-}
-
-impl Ranged for Scale {
-    type FormatOption = NoDefaultFormatting;
-    type ValueType = f64;
-
-    fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
-        place(*value, (self.low, self.high), limit)
-    }
-
-    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
-        if hint.weight().allow_light_points() { Vec::new() } else { self.ticks.clone() }
-    }
-
-    fn range(&self) -> std::ops::Range<f64> {
-        self.low..self.high
-    }
-}
-
-impl ValueFormatter<f64> for Scale {
-    fn format_ext(&self, value: &f64) -> String {
-        number(*value, self.decimals)
-    }
-}
-
 /// Draws axes and grid around the rectangle from `min` to `max`.
-///
-/// # Errors
-/// If plotters cannot draw.
-pub(super) fn axes(sheet: &Sheet, min: Spot, max: Spot, x: &Axis, y: &Axis) -> Result<Plot> {
-    let (left, below) = (units(y.room_px), units(x.room_px));
-    let root = DrawingArea::from(&Rc::clone(&sheet.canvas));
-    let (width, height) = root.dim_in_pixel();
-    // plotters ends a plot one unit before the border of its area.
-    let area = root.margin(min.1, height as i32 - max.1 - below - 1, min.0 - left, width as i32 - max.0 - 1);
-    let mut chart = ChartBuilder::on(&area)
-        .x_label_area_size(below)
-        .y_label_area_size(left)
-        .build_cartesian_2d(Scale::new(x), Scale::new(y))
-        .map_err(|error| failed(&error.to_string()))?;
-    let text = |em_px: f64, ink| glyphs::font(units(em_px), false).color(&colour(ink));
-    chart
-        .configure_mesh()
-        .axis_style(colour(FRAME).stroke_width(UNITS_PER_PX as u32))
-        .bold_line_style(colour(GRID).stroke_width(UNITS_PER_PX as u32))
-        .light_line_style(TRANSPARENT)
-        .set_all_tick_mark_size(units(5.0))
-        .label_style(text(SMALL_PX, QUIET))
-        .axis_desc_style(text(LABEL_PX, TEXT))
-        .x_desc(x.title.as_str())
-        .y_desc(y.title.as_str())
-        .draw()
-        .map_err(|error| failed(&error.to_string()))?;
-    Ok(Plot { min, max, x: (x.low, x.high), y: (y.low, y.high) })
+pub(super) fn axes(sheet: &mut Sheet, min: Spot, max: Spot, x: &Axis, y: &Axis) -> Plot {
+    let plot = Plot { min, max, x: (x.low, x.high), y: (y.low, y.high) };
+    let (x_ticks, x_decimals) = ticks(x.low, x.high, x.ticks);
+    let (y_ticks, y_decimals) = ticks(y.low, y.high, y.ticks);
+    let columns: Vec<(i32, String)> =
+        x_ticks.iter().map(|tick| (plot.at(*tick, y.low).0, spaced(*tick, x_decimals))).collect();
+    let rows: Vec<(i32, String)> =
+        y_ticks.iter().map(|tick| (plot.at(x.low, *tick).1, spaced(*tick, y_decimals))).collect();
+    for (column, _) in &columns {
+        sheet.line(vec![(*column, min.1), (*column, max.1)], 1.0, GRID);
+    }
+    for (row, _) in &rows {
+        sheet.line(vec![(min.0, *row), (max.0, *row)], 1.0, GRID);
+    }
+    for (column, number) in columns {
+        sheet.line(vec![(column, max.1), (column, max.1 + units(TICK_PX))], 1.0, FRAME);
+        let label = centred(words(&number, (column, max.1 + units(NUMBER_PX)), SMALL_PX, QUIET));
+        sheet.text(Text { across: Align::Start, ..label });
+    }
+    for (row, number) in rows {
+        sheet.line(vec![(min.0 - units(TICK_PX), row), (min.0, row)], 1.0, FRAME);
+        let label = words(&number, (min.0 - units(NUMBER_PX), row), SMALL_PX, QUIET);
+        sheet.text(Text { along: Align::End, ..label });
+    }
+    sheet.line(vec![min, (min.0, max.1)], 1.0, FRAME);
+    sheet.line(vec![(min.0, max.1), max], 1.0, FRAME);
+    let (middle, left) = ((min.0 + max.0) / 2, min.0 - units(y.room_px));
+    let title = centred(words(&x.title, (middle, max.1 + units(x.room_px)), LABEL_PX, TEXT));
+    sheet.text(Text { across: Align::End, ..title });
+    let title = centred(words(&y.title, (left, (min.1 + max.1) / 2), LABEL_PX, TEXT));
+    sheet.text(Text { across: Align::Start, upwards: true, ..title });
+    plot
 }
 
 #[cfg(test)]
@@ -214,11 +149,19 @@ mod tests {
     }
 
     #[test]
-    fn numbers_have_groups_and_a_true_minus() {
-        assert_eq!(number(-12_500.0, 0), "−12\u{2009}500");
-        assert_eq!(number(2500.0, 0), "2500");
-        assert_eq!(number(-0.001, 1), "0.0");
-        assert_eq!(number(1.25, 2), "1.25");
+    fn each_number_has_its_tick_and_its_line_of_the_grid() {
+        let mut sheet = Sheet::new(300.0, 300.0, "");
+        let axis = |title: &str| Axis { title: title.to_owned(), low: 0.0, high: 10.0, room_px: 40.0, ticks: 2 };
+        axes(&mut sheet, (400, 400), (1000, 1000), &axis("x"), &axis("y"));
+        let picture = sheet.finish().unwrap();
+        let image = image::load_from_memory(&picture.png).unwrap().to_rgb8();
+        for at in [100, 175] {
+            assert_eq!(image.get_pixel(at, 252).0, FRAME.rgb, "tick below at {at}");
+            assert_eq!(image.get_pixel(98, at).0, FRAME.rgb, "tick beside at {at}");
+        }
+        assert_eq!((image.get_pixel(175, 120).0, image.get_pixel(120, 175).0), (GRID.rgb, GRID.rgb));
+        assert_eq!((image.get_pixel(100, 120).0, image.get_pixel(120, 250).0), (FRAME.rgb, FRAME.rgb));
+        assert_eq!(picture.svg.matches(">5<").count(), 2);
     }
 
     #[test]

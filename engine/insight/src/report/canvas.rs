@@ -1,15 +1,5 @@
 //! A picture as a list of marks, in quarter pixels: what charts draw on and what both writers read.
 
-use std::convert::Infallible;
-
-use plotters_backend::text_anchor::{HPos, VPos};
-use plotters_backend::{
-    BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingBackend, DrawingErrorKind, FontStyle,
-    FontTransform,
-};
-
-use super::glyphs;
-
 /// Units of the canvas in one pixel, so that whole coordinates still place a line finely.
 pub(super) const UNITS_PER_PX: i32 = 4;
 
@@ -46,13 +36,6 @@ impl Ink {
         let mix = |from: u8, to: u8| (f64::from(from) + (f64::from(to) - f64::from(from)) * share).round() as u8;
         let rgb = [0, 1, 2].map(|channel| mix(self.rgb[channel], other.rgb[channel]));
         Self { rgb, alpha: 1.0 }
-    }
-}
-
-impl From<BackendColor> for Ink {
-    fn from(colour: BackendColor) -> Self {
-        let (red, green, blue) = colour.rgb;
-        Self { rgb: [red, green, blue], alpha: colour.alpha }
     }
 }
 
@@ -153,92 +136,5 @@ impl Canvas {
         } else if points.len() > 1 {
             self.marks.push(Mark::Line { points, width, ink });
         }
-    }
-}
-
-type Drawn = Result<(), DrawingErrorKind<Infallible>>;
-
-impl DrawingBackend for Canvas {
-    type ErrorType = Infallible;
-
-    fn get_size(&self) -> (u32, u32) {
-        (self.width_px * UNITS_PER_PX as u32, self.height_px * UNITS_PER_PX as u32)
-    }
-
-    fn ensure_prepared(&mut self) -> Drawn {
-        Ok(())
-    }
-
-    fn present(&mut self) -> Drawn {
-        Ok(())
-    }
-
-    fn draw_pixel(&mut self, at: BackendCoord, colour: BackendColor) -> Drawn {
-        self.marks.push(Mark::Rect { min: at, max: (at.0 + 1, at.1 + 1), ink: colour.into() });
-        Ok(())
-    }
-
-    fn draw_line<S: BackendStyle>(&mut self, from: BackendCoord, to: BackendCoord, style: &S) -> Drawn {
-        self.draw_path([from, to], style)
-    }
-
-    fn draw_rect<S: BackendStyle>(&mut self, min: BackendCoord, max: BackendCoord, style: &S, fill: bool) -> Drawn {
-        if fill {
-            self.marks.push(Mark::Rect { min, max, ink: style.color().into() });
-            return Ok(());
-        }
-        self.draw_path([min, (max.0, min.1), max, (min.0, max.1), min], style)
-    }
-
-    fn draw_path<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(&mut self, path: I, style: &S) -> Drawn {
-        let ink = Ink::from(style.color());
-        if ink.alpha > 0.0 {
-            self.line(path.into_iter().collect(), style.stroke_width() as i32, ink);
-        }
-        Ok(())
-    }
-
-    fn draw_circle<S: BackendStyle>(&mut self, centre: BackendCoord, radius: u32, style: &S, _fill: bool) -> Drawn {
-        self.marks.push(Mark::Disc { centre, radius: radius as i32, ink: style.color().into() });
-        Ok(())
-    }
-
-    fn fill_polygon<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(&mut self, path: I, style: &S) -> Drawn {
-        self.marks.push(Mark::Area { points: path.into_iter().collect(), ink: style.color().into() });
-        Ok(())
-    }
-
-    fn draw_text<S: BackendTextStyle>(&mut self, words: &str, style: &S, at: BackendCoord) -> Drawn {
-        let along = match style.anchor().h_pos {
-            HPos::Left => Align::Start,
-            HPos::Center => Align::Middle,
-            HPos::Right => Align::End,
-        };
-        let across = match style.anchor().v_pos {
-            VPos::Top => Align::Start,
-            VPos::Center => Align::Middle,
-            VPos::Bottom => Align::End,
-        };
-        self.marks.push(Mark::Text(Text {
-            words: words.to_owned(),
-            at,
-            em: style.size().round() as i32,
-            bold: matches!(style.style(), FontStyle::Bold),
-            along,
-            across,
-            upwards: matches!(style.transform(), FontTransform::Rotate270),
-            ink: style.color().into(),
-        }));
-        Ok(())
-    }
-
-    fn estimate_text_size<S: BackendTextStyle>(
-        &self,
-        words: &str,
-        style: &S,
-    ) -> Result<(u32, u32), DrawingErrorKind<Infallible>> {
-        let em = style.size().round() as i32;
-        let width = glyphs::width(words, em, matches!(style.style(), FontStyle::Bold));
-        Ok((width.max(0) as u32, em.max(0) as u32))
     }
 }

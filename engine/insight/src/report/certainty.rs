@@ -2,9 +2,10 @@
 
 use super::axes::BELOW_PX;
 use super::canvas::units;
+use super::picture::{Picture, failed};
+use super::route;
 use super::sheet::{BELOW_TITLE_PX, FRAME, MARGIN_PX, Sheet, spot};
 use super::trajectory::{Floor, LEFT_PX};
-use super::{Picture, failed, route};
 use engine::diagnostic::Result;
 use engine::experiment::Trail;
 
@@ -32,14 +33,14 @@ pub fn certainty_grid(
     let floor = Floor::showing((x_m, end[0]), (y_m, end[1]));
     let room_px = WIDTH_PX - 2.0 * MARGIN_PX - LEFT_PX;
     let (width_px, height_px) = floor.fit(room_px, 720.0);
-    let sheet = Sheet::new(WIDTH_PX, BELOW_TITLE_PX + height_px + BELOW_PX + MARGIN_PX / 2.0, title);
+    let mut sheet = Sheet::new(WIDTH_PX, BELOW_TITLE_PX + height_px + BELOW_PX + MARGIN_PX / 2.0, title);
     let min = spot(MARGIN_PX + LEFT_PX + (room_px - width_px) / 2.0, BELOW_TITLE_PX);
     let max = (min.0 + units(width_px), min.1 + units(height_px));
-    let plot = floor.plot(&sheet, min, max)?;
+    let plot = floor.plot(&mut sheet, min, max);
     let rgb = cells.chunks(width).rev().flatten().flat_map(|grey| [*grey; 3]).collect();
     let (min, max) = (plot.at(x_m, end[1]), plot.at(end[0], y_m));
     sheet.image(min, max, width, height, rgb);
     sheet.border(min, max, FRAME);
-    route::draw(&sheet, &plot, path);
+    route::draw(&mut sheet, &plot, path);
     sheet.finish()
 }

@@ -1,12 +1,14 @@
 //! The learning curve: reinforcement in each window of steps, for one run or for many.
 
-use super::Picture;
-use super::axes::{Axis, BELOW_PX, Plot, axes, number, range};
+use super::axes::{Axis, BELOW_PX, Plot, axes, range};
 use super::canvas::{Align, Spot, Text};
+use super::picture::Picture;
 use super::sheet::{
     BELOW_TITLE_PX, BLUE, Entry, MARGIN_PX, PAPER, SKY, SMALL_PX, Sheet, VERMILION, legend, spot, words,
 };
+use crate::words::spaced;
 use engine::diagnostic::Result;
+use engine::stats::Sorted;
 
 const WIDTH_PX: f64 = 1200.0;
 const HEIGHT_PX: f64 = 700.0;
@@ -33,29 +35,29 @@ pub struct CurveData<'a> {
 /// # Errors
 /// If the picture cannot be drawn or encoded.
 pub fn learning_curve(data: &CurveData<'_>) -> Result<Picture> {
-    let sheet = Sheet::new(WIDTH_PX, HEIGHT_PX, data.title);
-    let plot = frame(&sheet, data)?;
+    let mut sheet = Sheet::new(WIDTH_PX, HEIGHT_PX, data.title);
+    let plot = frame(&mut sheet, data);
     let place = |window: usize, value: f64| plot.at((window as f64 + 1.0) * data.window_steps as f64, value);
     if let [curve] = data.curves {
-        stroke(&sheet, curve.iter().copied(), place, 2.0, BLUE);
+        stroke(&mut sheet, curve.iter().copied(), place, 2.0, BLUE);
     } else {
         let bands = quartiles(data.curves);
         let edge = |part: usize| bands.iter().enumerate().map(move |(window, band)| (window, band[part]));
         let outline = edge(0).chain(edge(2).rev()).filter(|(_, value)| value.is_finite());
         for curve in data.curves {
-            stroke(&sheet, curve.iter().copied(), place, 1.0, SKY.towards(PAPER, 0.6));
+            stroke(&mut sheet, curve.iter().copied(), place, 1.0, SKY.towards(PAPER, 0.6));
         }
         sheet.area(outline.map(|(window, value)| place(window, value)).collect(), BLUE.thin(0.22));
-        stroke(&sheet, bands.iter().map(|band| band[1]), place, 3.0, BLUE);
-        explain(&sheet, data.curves.len());
+        stroke(&mut sheet, bands.iter().map(|band| band[1]), place, 3.0, BLUE);
+        explain(&mut sheet, data.curves.len());
     }
     if let Some(step) = data.learned_at {
-        mark_learned(&sheet, &plot, step, data.curves.len() > 1);
+        mark_learned(&mut sheet, &plot, step, data.curves.len() > 1);
     }
     sheet.finish()
 }
 
-fn frame(sheet: &Sheet, data: &CurveData<'_>) -> Result<Plot> {
+fn frame(sheet: &mut Sheet, data: &CurveData<'_>) -> Plot {
     let windows = data.curves.iter().map(Vec::len).max().unwrap_or(0);
     let last = (windows as f64 * data.window_steps as f64).max(data.learned_at.unwrap_or(0) as f64);
     let (low, high) = range(data.curves.iter().flatten().copied());
@@ -64,7 +66,7 @@ fn frame(sheet: &Sheet, data: &CurveData<'_>) -> Result<Plot> {
     let high = if high <= 0.0 && high + (high - low) * 0.5 >= 0.0 { 0.0 } else { high + room };
     let low = if low >= 0.0 && low - (high - low) * 0.5 <= 0.0 { 0.0 } else { low - room };
     let x = Axis { title: "step".to_owned(), low: 0.0, high: last.max(1.0), room_px: BELOW_PX, ticks: 9 };
-    let windows = number(data.window_steps as f64, 0);
+    let windows = spaced(data.window_steps as f64, 0);
     let y = Axis { title: format!("reinforcement per {windows} steps"), low, high, room_px: LEFT_PX, ticks: 8 };
     let min = spot(MARGIN_PX + LEFT_PX, BELOW_TITLE_PX + 22.0);
     axes(sheet, min, spot(END_PX, HEIGHT_PX - MARGIN_PX / 2.0 - BELOW_PX), &x, &y)
@@ -72,14 +74,14 @@ fn frame(sheet: &Sheet, data: &CurveData<'_>) -> Result<Plot> {
 
 /// Draws values as a line that is broken where one is not finite; a value alone is a dot.
 fn stroke(
-    sheet: &Sheet,
+    sheet: &mut Sheet,
     values: impl Iterator<Item = f64>,
     place: impl Fn(usize, f64) -> Spot,
     width_px: f64,
     ink: super::canvas::Ink,
 ) {
     let mut line = Vec::new();
-    let end = |line: &mut Vec<Spot>| match std::mem::take(line)[..] {
+    let mut end = |line: &mut Vec<Spot>| match std::mem::take(line)[..] {
         [alone] => sheet.disc(alone, width_px + 1.0, ink),
         ref many => sheet.line(many.to_vec(), width_px, ink),
     };
@@ -93,46 +95,35 @@ fn stroke(
     end(&mut line);
 }
 
-/// Lower quartile, median and upper quartile of each window, over the runs that reached it.
+/// Lower quartile, median and upper quartile of each window, over the runs that reached it; NaN where none did.
 fn quartiles(curves: &[Vec<f64>]) -> Vec<[f64; 3]> {
     let windows = curves.iter().map(Vec::len).max().unwrap_or(0);
-    let mut values = Vec::with_capacity(curves.len());
-    let mut bands = Vec::with_capacity(windows);
-    for window in 0..windows {
-        values.clear();
-        values.extend(curves.iter().filter_map(|curve| curve.get(window)).filter(|value| value.is_finite()));
-        values.sort_by(f64::total_cmp);
-        bands.push([0.25, 0.5, 0.75].map(|share| quantile(&values, share)));
-    }
-    bands
+    let bands = (0..windows).map(|window| {
+        let values = curves.iter().filter_map(|curve| curve.get(window).copied());
+        let values: Sorted = values.filter(|value| value.is_finite()).collect();
+        [0.25, 0.5, 0.75].map(|share| values.quantile(share).unwrap_or(f64::NAN))
+    });
+    bands.collect()
 }
 
-/// The value below which a share of the sorted values lies, linear between neighbours; NaN without values.
-fn quantile(sorted: &[f64], share: f64) -> f64 {
-    let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
-    let at = share * last as f64;
-    let (low, high) = (sorted[at.floor() as usize], sorted[at.ceil() as usize]);
-    low + (high - low) * (at - at.floor())
-}
-
-fn explain(sheet: &Sheet, runs: usize) {
+fn explain(sheet: &mut Sheet, runs: usize) {
     let level = |from: Spot, to: Spot| vec![(from.0, (from.1 + to.1) / 2), (to.0, (from.1 + to.1) / 2)];
     let median = format!("median of {runs} runs");
     legend(
         sheet,
         spot(END_PX, BELOW_TITLE_PX + 4.0),
         &[
-            Entry { sign: &|sheet, from, to| sheet.line(level(from, to), 3.0, BLUE), words: &median },
-            Entry { sign: &|sheet, from, to| sheet.rect(from, to, BLUE.thin(0.22)), words: "quartiles" },
+            Entry { sign: &|sheet: &mut Sheet, from, to| sheet.line(level(from, to), 3.0, BLUE), words: &median },
+            Entry { sign: &|sheet: &mut Sheet, from, to| sheet.rect(from, to, BLUE.thin(0.22)), words: "quartiles" },
             Entry {
-                sign: &|sheet, from, to| sheet.line(level(from, to), 1.0, SKY.towards(PAPER, 0.6)),
+                sign: &|sheet: &mut Sheet, from, to| sheet.line(level(from, to), 1.0, SKY.towards(PAPER, 0.6)),
                 words: "each run",
             },
         ],
     );
 }
 
-fn mark_learned(sheet: &Sheet, plot: &Plot, step: u64, many: bool) {
+fn mark_learned(sheet: &mut Sheet, plot: &Plot, step: u64, many: bool) {
     let (x, _) = plot.at(step as f64, 0.0);
     sheet.line(vec![(x, plot.min.1), (x, plot.max.1)], 1.5, VERMILION);
     let kind = if many { "learned (median)" } else { "learned" };
@@ -140,7 +131,7 @@ fn mark_learned(sheet: &Sheet, plot: &Plot, step: u64, many: bool) {
     let right = x < plot.min.0 + (plot.max.0 - plot.min.0) * 3 / 4;
     let away = if right { 40 } else { -40 };
     let text =
-        words(&format!("{kind}: step {}", number(step as f64, 0)), (x + away, plot.max.1 - 80), SMALL_PX, VERMILION);
+        words(&format!("{kind}: step {}", spaced(step as f64, 0)), (x + away, plot.max.1 - 80), SMALL_PX, VERMILION);
     sheet.text(Text { along: if right { Align::Start } else { Align::End }, ..text });
 }
 
@@ -152,6 +143,5 @@ mod tests {
     fn quartiles_are_taken_over_the_runs_that_reached_a_window() {
         let curves = [vec![1.0, 7.0], vec![2.0], vec![3.0], vec![4.0], vec![5.0]];
         assert_eq!(quartiles(&curves), [[2.0, 3.0, 4.0], [7.0, 7.0, 7.0]]);
-        assert_eq!(quantile(&[1.0, 2.0], 0.5), 1.5);
     }
 }

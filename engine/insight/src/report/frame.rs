@@ -1,10 +1,10 @@
 //! One image seen through the pipeline: the image, what each filter made of it, the grid and its state.
 
 use super::canvas::{Ink, Spot, units};
+use super::picture::{Picture, failed};
 use super::sheet::{
     BELOW_TITLE_PX, BLUE, FRAME, LABEL_PX, MARGIN_PX, PAPER, QUIET, SKY, SMALL_PX, Sheet, TEXT, centred, spot, words,
 };
-use super::{Picture, failed};
 use engine::diagnostic::Result;
 use engine::experiment::Snapshot;
 use engine::sensors::observation::Image;
@@ -119,7 +119,7 @@ pub fn frame(data: &FrameData<'_>) -> Result<Picture> {
     let top = BELOW_TITLE_PX + 30.0;
     let panels = data.panels.len();
     let sheet_width = 2.0 * MARGIN_PX + (panels + 1) as f64 * apart - GAP_PX;
-    let sheet = Sheet::new(sheet_width, top + panel_height + 74.0, data.title);
+    let mut sheet = Sheet::new(sheet_width, top + panel_height + 74.0, data.title);
     let panel = |index: usize| {
         let left = MARGIN_PX + index as f64 * apart + ((apart - GAP_PX - panel_width) / 2.0).floor();
         let min = spot(left, top);
@@ -127,14 +127,14 @@ pub fn frame(data: &FrameData<'_>) -> Result<Picture> {
     };
     for (index, shown) in data.panels.iter().enumerate() {
         let (min, max) = panel(index);
-        title(&sheet, min, max, shown.name, &shown.caption(width, height));
+        title(&mut sheet, min, max, shown.name, &shown.caption(width, height));
         let rgb = thinned(rows, columns, |row, column| shown.colour(row * keep * width + column * keep));
         sheet.image(min, max, columns, rows, rgb);
         sheet.border(min, max, FRAME);
     }
     let (min, max) = panel(panels);
-    title(&sheet, min, max, &format!("grid {} × {}: state {}", data.rows, data.columns, data.state), &digits(data));
-    grid(&sheet, min, max, data);
+    title(&mut sheet, min, max, &format!("grid {} × {}: state {}", data.rows, data.columns, data.state), &digits(data));
+    grid(&mut sheet, min, max, data);
     sheet.finish()
 }
 
@@ -156,7 +156,7 @@ fn thinned(rows: usize, columns: usize, pixel: impl Fn(usize, usize) -> [u8; 3])
     (0..rows).flat_map(|row| (0..columns).flat_map(move |column| pixel(row, column))).collect()
 }
 
-fn title(sheet: &Sheet, min: Spot, max: Spot, name: &str, below: &str) {
+fn title(sheet: &mut Sheet, min: Spot, max: Spot, name: &str, below: &str) {
     let middle = (min.0 + max.0) / 2;
     sheet.text(centred(words(name, (middle, min.1 - units(18.0)), LABEL_PX, TEXT)));
     sheet.text(centred(words(below, (middle, max.1 + units(24.0)), SMALL_PX, QUIET)));
@@ -169,7 +169,7 @@ fn digits(data: &FrameData<'_>) -> String {
     format!("filled cells in each column: {}", counts.join(" "))
 }
 
-fn grid(sheet: &Sheet, min: Spot, max: Spot, data: &FrameData<'_>) {
+fn grid(sheet: &mut Sheet, min: Spot, max: Spot, data: &FrameData<'_>) {
     let along = |index: usize, count: usize, low: i32, high: i32| low + (high - low) * index as i32 / count as i32;
     let x = |column: usize| along(column, data.columns, min.0, max.0);
     let y = |row: usize| along(row, data.rows, min.1, max.1);
@@ -190,7 +190,7 @@ fn grid(sheet: &Sheet, min: Spot, max: Spot, data: &FrameData<'_>) {
 }
 
 /// Fills a cell and gives the colour for words on it.
-fn cell_fill(sheet: &Sheet, from: Spot, to: Spot, occupied: bool, filled: bool) -> Ink {
+fn cell_fill(sheet: &mut Sheet, from: Spot, to: Spot, occupied: bool, filled: bool) -> Ink {
     if occupied {
         sheet.rect(from, to, BLUE);
         PAPER
@@ -205,7 +205,7 @@ fn cell_fill(sheet: &Sheet, from: Spot, to: Spot, occupied: bool, filled: bool) 
 }
 
 /// Slanted lines within a rectangle.
-fn hatch(sheet: &Sheet, from: Spot, to: Spot, ink: Ink) {
+fn hatch(sheet: &mut Sheet, from: Spot, to: Spot, ink: Ink) {
     let (width, height) = (to.0 - from.0, to.1 - from.1);
     let mut start = units(10.0);
     while start < width + height {

@@ -1,7 +1,7 @@
 //! How long a step takes under growing workloads: one group of bars for each kind of growth.
 
-use super::Picture;
 use super::canvas::units;
+use super::picture::Picture;
 use super::sheet::{
     BELOW_TITLE_PX, BLUE, FRAME, LABEL_PX, MARGIN_PX, QUIET, SMALL_PX, Sheet, TEXT, centred, fitted, spot, words,
 };
@@ -28,18 +28,18 @@ pub struct GrowthGroup<'a> {
 /// # Errors
 /// If the picture cannot be drawn or encoded.
 pub fn growth(title: &str, groups: &[GrowthGroup<'_>]) -> Result<Picture> {
-    let sheet = Sheet::new(WIDTH_PX, HEIGHT_PX, title);
+    let mut sheet = Sheet::new(WIDTH_PX, HEIGHT_PX, title);
     let bars: usize = groups.iter().map(|group| group.bars.len()).sum();
     let place_px = (WIDTH_PX - 2.0 * MARGIN_PX - GAP_PX * (groups.len().max(1) - 1) as f64) / bars.max(1) as f64;
     let mut left_px = MARGIN_PX;
     for group in groups {
-        draw(&sheet, group, left_px, place_px);
+        group_of_bars(&mut sheet, group, left_px, place_px);
         left_px += group.bars.len() as f64 * place_px + GAP_PX;
     }
     sheet.finish()
 }
 
-fn draw(sheet: &Sheet, group: &GrowthGroup<'_>, left_px: f64, place_px: f64) {
+fn group_of_bars(sheet: &mut Sheet, group: &GrowthGroup<'_>, left_px: f64, place_px: f64) {
     let (top_px, bottom_px) = (BELOW_TITLE_PX + 48.0, HEIGHT_PX - MARGIN_PX - 30.0);
     sheet.text(words(group.what, spot(left_px, BELOW_TITLE_PX + 8.0), LABEL_PX, TEXT));
     let most = group.bars.iter().map(|bar| bar.1).filter(|us| us.is_finite()).fold(f64::MIN_POSITIVE, f64::max);
@@ -49,10 +49,10 @@ fn draw(sheet: &Sheet, group: &GrowthGroup<'_>, left_px: f64, place_px: f64) {
         let height_px = (bottom_px - top_px) * (us / most).clamp(0.0, 1.0);
         sheet.rect(spot(middle_px - half_px, bottom_px - height_px), spot(middle_px + half_px, bottom_px), BLUE);
         let label = |text: &str, y_px: f64, ink| {
-            sheet.text(fitted(centred(words(text, spot(middle_px, y_px), SMALL_PX, ink)), units(place_px)));
+            fitted(centred(words(text, spot(middle_px, y_px), SMALL_PX, ink)), units(place_px))
         };
-        label(&format!("{us:.1} µs"), bottom_px - height_px - 14.0, TEXT);
-        label(name, bottom_px + 18.0, QUIET);
+        sheet.text(label(&format!("{us:.1} µs"), bottom_px - height_px - 14.0, TEXT));
+        sheet.text(label(name, bottom_px + 18.0, QUIET));
     }
     let end_px = left_px + group.bars.len() as f64 * place_px;
     sheet.line(vec![spot(left_px, bottom_px), spot(end_px, bottom_px)], 1.0, FRAME);

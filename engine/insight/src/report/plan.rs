@@ -18,7 +18,7 @@ const ROUTE: Ink = Ink::hex(0x8c959f);
 const LEAST_PLATFORM_M: f64 = 0.3;
 
 /// Draws the solids, the lowest first; one that holds any of `visited` is driven on and drawn light.
-pub(super) fn solids(sheet: &Sheet, plot: &Plot, parts: &SceneParts, visited: &[[f64; 2]]) {
+pub(super) fn solids(sheet: &mut Sheet, plot: &Plot, parts: &SceneParts, visited: &[[f64; 2]]) {
     let mut order: Vec<&Solid> = parts.solids.iter().collect();
     order.sort_by(|a, b| (a.collides, top(a)).partial_cmp(&(b.collides, top(b))).unwrap_or(std::cmp::Ordering::Equal));
     for solid in order {
@@ -40,20 +40,20 @@ pub(super) fn solids(sheet: &Sheet, plot: &Plot, parts: &SceneParts, visited: &[
 }
 
 /// Draws the lap that the world's author had in mind.
-pub(super) fn route(sheet: &Sheet, plot: &Plot, route: &[Point2]) {
+pub(super) fn route(sheet: &mut Sheet, plot: &Plot, route: &[Point2]) {
     let spots: Vec<Spot> =
         route.iter().filter(|at| at.x.is_finite() && at.y.is_finite()).map(|at| plot.at(at.x, at.y)).collect();
     dashed(sheet, &spots, 1.5, ROUTE);
 }
 
 /// The sign of the route in a legend.
-pub(super) fn route_sign(sheet: &Sheet, from: Spot, to: Spot) {
+pub(super) fn route_sign(sheet: &mut Sheet, from: Spot, to: Spot) {
     let y = (from.1 + to.1) / 2;
     dashed(sheet, &[(from.0, y), (to.0, y)], 1.5, ROUTE);
 }
 
 /// A line of dashes that run on around the corners.
-fn dashed(sheet: &Sheet, spots: &[Spot], width_px: f64, ink: Ink) {
+fn dashed(sheet: &mut Sheet, spots: &[Spot], width_px: f64, ink: Ink) {
     const DASH: f64 = 32.0;
     const GAP: f64 = 24.0;
     let mut done = 0.0;

@@ -1,13 +1,14 @@
 //! The learned table on one page: each state as a small grid, with the motion that the robot prefers there.
 
-use super::axes::number;
 use super::canvas::{Ink, Spot, units};
+use super::glyphs;
+use super::picture::Picture;
 use super::route::arrow_head;
 use super::sheet::{
     BELOW_TITLE_PX, BLUE, Entry, FRAME, GRID, MARGIN_PX, PAPER, QUIET, SMALL_PX, Sheet, TEXT, VERMILION, legend, spot,
     words,
 };
-use super::{Picture, glyphs};
+use crate::words::three_figures;
 use engine::diagnostic::Result;
 use engine::geometry::Twist;
 
@@ -60,18 +61,18 @@ pub fn policy(data: &PolicyData<'_>) -> Result<Picture> {
     shown.sort_by_key(|state| state.state);
     let lines = shown.len().div_ceil(ACROSS).max(1);
     let top_px = BELOW_TITLE_PX + 40.0;
-    let sheet = Sheet::new(WIDTH_PX, top_px + lines as f64 * STEP_Y_PX + MARGIN_PX / 2.0, data.title);
+    let mut sheet = Sheet::new(WIDTH_PX, top_px + lines as f64 * STEP_Y_PX + MARGIN_PX / 2.0, data.title);
     let most = shown.iter().map(|state| state.visits).max().unwrap_or(0);
     let fastest = shown.iter().map(|state| state.best.linear_m_per_s.abs()).fold(1e-9, f64::max);
     for (index, state) in shown.iter().enumerate() {
         let x_px = MARGIN_PX + (index % ACROSS) as f64 * STEP_X_PX;
         let y_px = top_px + (index / ACROSS) as f64 * STEP_Y_PX;
-        icon(&sheet, spot(x_px, y_px), (data.rows, data.columns), state, strength(state.visits, most));
+        icon(&mut sheet, spot(x_px, y_px), (data.rows, data.columns), state, strength(state.visits, most));
         // A way backwards begins at the top, so that it does not run into the words.
         let foot_px = if state.best.linear_m_per_s < 0.0 { 8.0 } else { ICON_PX - 8.0 };
-        motion(&sheet, spot(x_px + ICON_PX + 36.0, y_px + foot_px), state, fastest);
+        motion(&mut sheet, spot(x_px + ICON_PX + 36.0, y_px + foot_px), state, fastest);
     }
-    explain(&sheet);
+    explain(&mut sheet);
     sheet.finish()
 }
 
@@ -80,7 +81,7 @@ pub(super) fn strength(visits: u64, most: u64) -> f64 {
     if visits == 0 { 0.0 } else { 0.25 + 0.75 * libm::log1p(visits as f64) / libm::log1p(most as f64) }
 }
 
-pub(super) fn icon(sheet: &Sheet, min: Spot, (rows, columns): (usize, usize), state: &PolicyState, strength: f64) {
+pub(super) fn icon(sheet: &mut Sheet, min: Spot, (rows, columns): (usize, usize), state: &PolicyState, strength: f64) {
     let max = (min.0 + units(ICON_PX), min.1 + units(ICON_PX));
     let x = |column: usize| min.0 + units(ICON_PX * column as f64 / columns.max(1) as f64);
     let y = |row: usize| min.1 + units(ICON_PX * row as f64 / rows.max(1) as f64);
@@ -102,22 +103,13 @@ pub(super) fn icon(sheet: &Sheet, min: Spot, (rows, columns): (usize, usize), st
     let name = if state.visits == 0 { QUIET } else { TEXT };
     let number = words(&state.state.to_string(), (min.0, max.1 + units(13.0)), SMALL_PX, name);
     let after = (glyphs::width(&number.words, number.em, false) + units(10.0)).max(units(30.0));
-    let below = if state.visits == 0 { "not seen".to_owned() } else { short(state.value) };
+    let below = if state.visits == 0 { "not seen".to_owned() } else { three_figures(state.value) };
     sheet.text(words(&below, (min.0 + after, number.at.1), SMALL_PX, QUIET));
     sheet.text(number);
 }
 
-/// A value in about three figures.
-fn short(value: f64) -> String {
-    match value.abs() {
-        v if v >= 100.0 => number(value, 0),
-        v if v >= 10.0 => number(value, 1),
-        _ => number(value, 2),
-    }
-}
-
 /// The way that the robot would take in some time, from `foot` upwards: length tells speed, bend the turn.
-pub(super) fn motion(sheet: &Sheet, foot: Spot, state: &PolicyState, fastest: f64) {
+pub(super) fn motion(sheet: &mut Sheet, foot: Spot, state: &PolicyState, fastest: f64) {
     let ink = match state {
         PolicyState { visits: 0, .. } => return,
         PolicyState { best, .. } if best.linear_m_per_s < 0.0 => VERMILION,
@@ -142,7 +134,7 @@ pub(super) fn motion(sheet: &Sheet, foot: Spot, state: &PolicyState, fastest: f6
 }
 
 /// A turn on the spot: an arc around it.
-fn spin(sheet: &Sheet, foot: Spot, bend: f64, ink: Ink) {
+fn spin(sheet: &mut Sheet, foot: Spot, bend: f64, ink: Ink) {
     let centre = (foot.0, foot.1 - units(20.0));
     if bend == 0.0 {
         return sheet.disc(centre, 4.0, ink);
@@ -154,7 +146,7 @@ fn spin(sheet: &Sheet, foot: Spot, bend: f64, ink: Ink) {
     finish_arrow(sheet, centre, way.collect(), ink);
 }
 
-fn finish_arrow(sheet: &Sheet, foot: Spot, way: Vec<Spot>, ink: Ink) {
+fn finish_arrow(sheet: &mut Sheet, foot: Spot, way: Vec<Spot>, ink: Ink) {
     if let [.., before, _, tip] = way[..] {
         sheet.line(way, 2.0, ink);
         sheet.disc(foot, 3.0, ink);
@@ -162,15 +154,15 @@ fn finish_arrow(sheet: &Sheet, foot: Spot, way: Vec<Spot>, ink: Ink) {
     }
 }
 
-fn explain(sheet: &Sheet) {
+fn explain(sheet: &mut Sheet) {
     let end = spot(WIDTH_PX - MARGIN_PX, BELOW_TITLE_PX + 6.0);
-    let shades = |sheet: &Sheet, from: Spot, to: Spot| {
+    let shades = |sheet: &mut Sheet, from: Spot, to: Spot| {
         for part in 0..4 {
             let x = |part: i32| from.0 + (to.0 - from.0) * part / 4;
             sheet.rect((x(part), from.1), (x(part + 1), to.1), PAPER.towards(BLUE, 0.25 + 0.25 * f64::from(part)));
         }
     };
-    let arrow = |sheet: &Sheet, from: Spot, to: Spot| {
+    let arrow = |sheet: &mut Sheet, from: Spot, to: Spot| {
         let y = (from.1 + to.1) / 2;
         let way = (0..=4).map(|part| (from.0 + (to.0 - from.0 - units(4.0)) * part / 4, y)).collect();
         finish_arrow(sheet, (from.0, y), way, TEXT);

@@ -1,7 +1,7 @@
 //! What a change of the reward changed: each state whose best action is another one, with both motions.
 
-use super::Picture;
 use super::canvas::units;
+use super::picture::Picture;
 use super::policy::{ICON_PX, PolicyState, icon, motion, strength};
 use super::sheet::{BELOW_TITLE_PX, MARGIN_PX, QUIET, SMALL_PX, Sheet, TEXT, centred, spot, words};
 use engine::diagnostic::Result;
@@ -48,7 +48,7 @@ pub fn policy_diff(data: &PolicyDiffData<'_>) -> Result<Picture> {
     let shown = &data.states[..data.states.len().min(MOST)];
     let top_px = BELOW_TITLE_PX + 44.0;
     let lines = shown.len().div_ceil(ACROSS).max(1);
-    let sheet = Sheet::new(WIDTH_PX, top_px + lines as f64 * STEP_Y_PX + MARGIN_PX / 2.0, data.title);
+    let mut sheet = Sheet::new(WIDTH_PX, top_px + lines as f64 * STEP_Y_PX + MARGIN_PX / 2.0, data.title);
     let most = shown.iter().map(|state| state.before.visits).max().unwrap_or(0);
     let both = || shown.iter().flat_map(|state| [&state.before, &state.after]);
     let fastest = both().map(|state| state.best.linear_m_per_s.abs()).fold(1e-9, f64::max);
@@ -66,13 +66,13 @@ pub fn policy_diff(data: &PolicyDiffData<'_>) -> Result<Picture> {
         let y_px = top_px + (index / ACROSS) as f64 * STEP_Y_PX;
         let PolicyState { visits, .. } = change.before;
         let size = (data.rows, data.columns);
-        icon(&sheet, spot(x_px, y_px), size, &change.before, strength(visits, most));
+        icon(&mut sheet, spot(x_px, y_px), size, &change.before, strength(visits, most));
         let below_px = y_px + ICON_PX + 13.0;
         sheet.text(words(&format!("{visits} visits"), spot(x_px, below_px + 17.0), SMALL_PX, QUIET));
         for (side, state) in [&change.before, &change.after].into_iter().enumerate() {
             let x_px = x_px + ICON_PX + MOTION_PX + side as f64 * APART_PX;
             let foot_px = if state.best.linear_m_per_s < 0.0 { 8.0 } else { ICON_PX - 8.0 };
-            motion(&sheet, spot(x_px, y_px + foot_px), state, fastest);
+            motion(&mut sheet, spot(x_px, y_px + foot_px), state, fastest);
             let name = ["before", "after"][side];
             sheet.text(centred(words(name, spot(x_px, below_px), SMALL_PX, TEXT)));
             let tried = format!("tried {}", change.tried[side]);

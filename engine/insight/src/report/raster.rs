@@ -4,7 +4,8 @@ use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 
 use super::canvas::{Canvas, Ink, Mark, Spot, UNITS_PER_PX};
-use super::{failed, glyphs};
+use super::glyphs;
+use super::picture::failed;
 use engine::diagnostic::Result;
 
 /// The canvas as a whole PNG file.
@@ -66,10 +67,7 @@ impl Raster {
                 self.blend(*ink);
             }
             Mark::Area { points, ink } => {
-                for (index, to) in points.iter().enumerate() {
-                    let from = points[(index + points.len() - 1) % points.len()];
-                    self.edge(point(from), point(*to));
-                }
+                self.outline(points.iter().copied().map(point));
                 self.sum_edges();
                 self.blend(*ink);
             }
@@ -85,12 +83,10 @@ impl Raster {
                 self.blend(*ink);
             }
             Mark::Text(text) => {
-                glyphs::draw(text, |x, y, share| {
-                    if x >= 0 && y >= 0 && (x as usize) < self.width && (y as usize) < self.height {
-                        self.touch(y as usize, x as usize, x as usize + 1);
-                        self.cover[y as usize * self.width + x as usize] += share;
-                    }
-                });
+                for outline in glyphs::outlines(text) {
+                    self.outline(outline.into_iter());
+                }
+                self.sum_edges();
                 self.blend(text.ink);
             }
             Mark::Pixels { min, max, columns, rows, rgb } => {
@@ -123,6 +119,14 @@ impl Raster {
             {
                 *cover = down * share(column, min.0, max.0);
             }
+        }
+    }
+
+    /// Adds the edges of a closed outline.
+    fn outline(&mut self, corners: impl DoubleEndedIterator<Item = Point> + Clone) {
+        let last = corners.clone().next_back();
+        for (from, to) in last.into_iter().chain(corners.clone()).zip(corners) {
+            self.edge(from, to);
         }
     }
 

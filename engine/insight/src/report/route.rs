@@ -22,7 +22,7 @@ pub(super) fn points(path: &Trail) -> impl Iterator<Item = [f64; 2]> {
 }
 
 /// Draws the legs, where each starts, and the failures.
-pub(super) fn draw(sheet: &Sheet, plot: &Plot, path: &Trail) {
+pub(super) fn draw(sheet: &mut Sheet, plot: &Plot, path: &Trail) {
     let total = path.legs.iter().map(Vec::len).sum::<usize>().max(1);
     let mut before = 0;
     for leg in &path.legs {
@@ -57,7 +57,7 @@ fn moment(index: usize, total: usize) -> usize {
 }
 
 /// One line for each colour; points closer than half a pixel to the one before are left out.
-fn leg_line(sheet: &Sheet, plot: &Plot, leg: &[[f32; 2]], before: usize, total: usize) {
+fn leg_line(sheet: &mut Sheet, plot: &Plot, leg: &[[f32; 2]], before: usize, total: usize) {
     let mut line: Vec<Spot> = Vec::new();
     let mut colour = moment(before, total);
     for (index, at) in leg.iter().enumerate() {
@@ -76,12 +76,12 @@ fn leg_line(sheet: &Sheet, plot: &Plot, leg: &[[f32; 2]], before: usize, total: 
     stroke(sheet, line, colour);
 }
 
-fn stroke(sheet: &Sheet, line: Vec<Spot>, colour: usize) {
+fn stroke(sheet: &mut Sheet, line: Vec<Spot>, colour: usize) {
     sheet.line(line, 1.75, shade((colour as f64 + 0.5) / SHADES as f64));
 }
 
 /// An arrow head each 160 pixels of the way, at most ten in a leg.
-fn leg_arrows(sheet: &Sheet, plot: &Plot, leg: &[[f32; 2]], before: usize, total: usize) {
+fn leg_arrows(sheet: &mut Sheet, plot: &Plot, leg: &[[f32; 2]], before: usize, total: usize) {
     let apart = f64::from(160 * UNITS_PER_PX);
     let mut way = apart / 2.0;
     let mut drawn = 0;
@@ -104,7 +104,7 @@ fn length(from: Spot, to: Spot) -> f64 {
 }
 
 /// A filled arrow head with its tip at `to`.
-pub(super) fn arrow_head(sheet: &Sheet, from: Spot, to: Spot, long_px: f64, ink: Ink) {
+pub(super) fn arrow_head(sheet: &mut Sheet, from: Spot, to: Spot, long_px: f64, ink: Ink) {
     let way = length(from, to).max(1.0);
     let long = long_px * f64::from(UNITS_PER_PX);
     let (x, y) = (f64::from(to.0 - from.0) / way * long, f64::from(to.1 - from.1) / way * long);

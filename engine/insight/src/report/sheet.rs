@@ -1,10 +1,8 @@
 //! The paper that every picture is drawn on: colours, sizes of text, and a few strokes.
 
-use std::cell::RefCell;
-use std::rc::Rc;
-
 use super::canvas::{Align, Canvas, Ink, Mark, Spot, Text, units};
-use super::{Picture, glyphs, raster, vector};
+use super::picture::Picture;
+use super::{glyphs, raster, vector};
 use engine::diagnostic::Result;
 
 pub(super) const PAPER: Ink = Ink::hex(0xffffff);
@@ -35,7 +33,7 @@ pub(super) fn spot(x_px: f64, y_px: f64) -> Spot {
 
 /// A picture in the making.
 pub(super) struct Sheet {
-    pub(super) canvas: Rc<RefCell<Canvas>>,
+    canvas: Canvas,
     title: String,
     pub(super) height_px: f64,
 }
@@ -44,7 +42,7 @@ impl Sheet {
     /// White paper with a title.
     pub(super) fn new(width_px: f64, height_px: f64, title: &str) -> Self {
         let canvas = Canvas::new(width_px.ceil() as u32, height_px.ceil() as u32);
-        let sheet = Self { canvas: Rc::new(RefCell::new(canvas)), title: title.to_owned(), height_px };
+        let mut sheet = Self { canvas, title: title.to_owned(), height_px };
         sheet.rect(spot(0.0, 0.0), spot(width_px.ceil(), height_px.ceil()), PAPER);
         let mut text = words(title, spot(MARGIN_PX, MARGIN_PX), TITLE_PX, TEXT);
         (text.bold, text.across) = (true, Align::Start);
@@ -54,42 +52,41 @@ impl Sheet {
 
     /// The finished picture.
     pub(super) fn finish(self) -> Result<Picture> {
-        let canvas = self.canvas.borrow();
-        Ok(Picture { svg: vector::svg(&canvas, &self.title)?, png: raster::png(&canvas)? })
+        Ok(Picture { svg: vector::svg(&self.canvas, &self.title)?, png: raster::png(&self.canvas)? })
     }
 
-    fn push(&self, mark: Mark) {
-        self.canvas.borrow_mut().marks.push(mark);
+    fn push(&mut self, mark: Mark) {
+        self.canvas.marks.push(mark);
     }
 
-    pub(super) fn rect(&self, min: Spot, max: Spot, ink: Ink) {
+    pub(super) fn rect(&mut self, min: Spot, max: Spot, ink: Ink) {
         self.push(Mark::Rect { min, max, ink });
     }
 
     /// The border of a rectangle, one pixel wide, on whole pixels.
-    pub(super) fn border(&self, min: Spot, max: Spot, ink: Ink) {
+    pub(super) fn border(&mut self, min: Spot, max: Spot, ink: Ink) {
         let corners = [min, (max.0, min.1), max, (min.0, max.1), min];
         for side in corners.windows(2) {
             self.line(side.to_vec(), 1.0, ink);
         }
     }
 
-    pub(super) fn area(&self, points: Vec<Spot>, ink: Ink) {
+    pub(super) fn area(&mut self, points: Vec<Spot>, ink: Ink) {
         if points.len() > 2 {
             self.push(Mark::Area { points, ink });
         }
     }
 
-    pub(super) fn line(&self, points: Vec<Spot>, width_px: f64, ink: Ink) {
-        self.canvas.borrow_mut().line(points, units(width_px), ink);
+    pub(super) fn line(&mut self, points: Vec<Spot>, width_px: f64, ink: Ink) {
+        self.canvas.line(points, units(width_px), ink);
     }
 
-    pub(super) fn disc(&self, centre: Spot, radius_px: f64, ink: Ink) {
+    pub(super) fn disc(&mut self, centre: Spot, radius_px: f64, ink: Ink) {
         self.push(Mark::Disc { centre, radius: units(radius_px), ink });
     }
 
     /// A diagonal cross.
-    pub(super) fn cross(&self, centre: Spot, reach_px: f64, ink: Ink) {
+    pub(super) fn cross(&mut self, centre: Spot, reach_px: f64, ink: Ink) {
         let reach = units(reach_px);
         for side in [-1, 1] {
             let ends = [(centre.0 - reach, centre.1 - reach * side), (centre.0 + reach, centre.1 + reach * side)];
@@ -97,11 +94,11 @@ impl Sheet {
         }
     }
 
-    pub(super) fn text(&self, text: Text) {
+    pub(super) fn text(&mut self, text: Text) {
         self.push(Mark::Text(text));
     }
 
-    pub(super) fn image(&self, min: Spot, max: Spot, columns: usize, rows: usize, rgb: Vec<u8>) {
+    pub(super) fn image(&mut self, min: Spot, max: Spot, columns: usize, rows: usize, rgb: Vec<u8>) {
         self.push(Mark::Pixels { min, max, columns, rows, rgb });
     }
 }
@@ -143,12 +140,12 @@ pub(super) fn fitted(mut text: Text, width: i32) -> Text {
 
 /// One entry of a legend: how its sign is drawn, and what it means.
 pub(super) struct Entry<'a> {
-    pub(super) sign: &'a dyn Fn(&Sheet, Spot, Spot),
+    pub(super) sign: &'a dyn Fn(&mut Sheet, Spot, Spot),
     pub(super) words: &'a str,
 }
 
 /// Draws entries in a row that ends at the right of `end`; a sign gets the box from its first to its second corner.
-pub(super) fn legend(sheet: &Sheet, end: Spot, entries: &[Entry<'_>]) {
+pub(super) fn legend(sheet: &mut Sheet, end: Spot, entries: &[Entry<'_>]) {
     let (sign, gap, after) = (units(28.0), units(8.0), units(26.0));
     let mut right = end.0;
     for entry in entries.iter().rev() {

@@ -1,8 +1,8 @@
 //! Where the robot drove: panels of the world from above, such as early and late.
 
-use super::Picture;
 use super::axes::{Axis, BELOW_PX, Plot, axes, range};
 use super::canvas::{Spot, units};
+use super::picture::Picture;
 use super::sheet::{
     BELOW_TITLE_PX, Entry, LABEL_PX, MARGIN_PX, Sheet, TEXT, VERMILION, centred, fitted, legend, spot, words,
 };
@@ -40,7 +40,7 @@ pub fn trajectories(data: &TrajectoryData<'_>) -> Result<Picture> {
     let room_px = (WIDTH_PX - 2.0 * MARGIN_PX - 24.0) / 2.0 - LEFT_PX;
     let (width_px, height_px) = floor.fit(room_px, 760.0);
     let top_px = BELOW_TITLE_PX + 30.0;
-    let sheet = Sheet::new(WIDTH_PX, top_px + height_px + BELOW_PX + 44.0, data.title);
+    let mut sheet = Sheet::new(WIDTH_PX, top_px + height_px + BELOW_PX + 44.0, data.title);
     // Failures are where walls are touched; only the way itself shows what can be driven on.
     let driven: Vec<[f64; 2]> = data.panels.iter().flat_map(|(_, path)| driven(path)).collect();
     for (index, (name, path)) in data.panels.iter().enumerate() {
@@ -49,12 +49,12 @@ pub fn trajectories(data: &TrajectoryData<'_>) -> Result<Picture> {
         let max = (min.0 + units(width_px), min.1 + units(height_px));
         let heading = centred(words(name, ((min.0 + max.0) / 2, min.1 - units(18.0)), LABEL_PX, TEXT));
         sheet.text(fitted(heading, units(room_px)));
-        let plot = floor.plot(&sheet, min, max)?;
-        plan::solids(&sheet, &plot, data.parts, &driven);
-        plan::route(&sheet, &plot, lap);
-        route::draw(&sheet, &plot, path);
+        let plot = floor.plot(&mut sheet, min, max);
+        plan::solids(&mut sheet, &plot, data.parts, &driven);
+        plan::route(&mut sheet, &plot, lap);
+        route::draw(&mut sheet, &plot, path);
     }
-    explain(&sheet, data.route.is_some());
+    explain(&mut sheet, data.route.is_some());
     sheet.finish()
 }
 
@@ -100,7 +100,7 @@ impl Floor {
     }
 
     /// Draws the axes and the empty floor.
-    pub(super) fn plot(&self, sheet: &Sheet, min: Spot, max: Spot) -> Result<Plot> {
+    pub(super) fn plot(&self, sheet: &mut Sheet, min: Spot, max: Spot) -> Plot {
         sheet.rect(min, max, plan::FLOOR);
         let per_tick = units(80.0);
         let x = Axis {
@@ -121,19 +121,19 @@ impl Floor {
     }
 }
 
-fn explain(sheet: &Sheet, lap: bool) {
+fn explain(sheet: &mut Sheet, lap: bool) {
     let middle = |from: Spot, to: Spot| ((from.0 + to.0) / 2, (from.1 + to.1) / 2);
     let end = spot(WIDTH_PX - MARGIN_PX, sheet.height_px - 28.0);
-    let time = |sheet: &Sheet, from: Spot, to: Spot| {
+    let time = |sheet: &mut Sheet, from: Spot, to: Spot| {
         let y = (from.1 + to.1) / 2;
         for part in 0..14 {
             let x = |part: i32| from.0 / 4 * 4 + (to.0 - from.0) * part / 14;
             sheet.line(vec![(x(part), y), (x(part + 1), y)], 3.0, route::shade(f64::from(part) / 13.0));
         }
     };
-    let start = |sheet: &Sheet, from: Spot, to: Spot| sheet.disc(middle(from, to), 6.0, route::shade(1.0));
-    let failure = |sheet: &Sheet, from: Spot, to: Spot| sheet.cross(middle(from, to), 5.0, VERMILION);
-    let intended = |sheet: &Sheet, from: Spot, to: Spot| plan::route_sign(sheet, from, to);
+    let start = |sheet: &mut Sheet, from: Spot, to: Spot| sheet.disc(middle(from, to), 6.0, route::shade(1.0));
+    let failure = |sheet: &mut Sheet, from: Spot, to: Spot| sheet.cross(middle(from, to), 5.0, VERMILION);
+    let intended = |sheet: &mut Sheet, from: Spot, to: Spot| plan::route_sign(sheet, from, to);
     let all = [
         Entry { sign: &start, words: "start" },
         Entry { sign: &time, words: "way, light early to dark late" },

@@ -5,11 +5,11 @@ use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
 use serde::Deserialize;
-use sha2::{Digest, Sha256};
 
 use super::log::{LOG_FILE, log_names};
 use super::read_stored;
 use engine::diagnostic::{Diagnostic, Result, SourceText, printable};
+use engine::digest::{Digest, hex};
 use engine::experiment::DIGEST_BYTES;
 
 /// The name of the file that all others of a run's folder name.
@@ -18,15 +18,6 @@ pub const RUN_FILE: &str = "run.toml";
 pub const SUMMARY_FILE: &str = "summary.json";
 /// The longest part of a log that is read to find out its run, bytes: prefix and header.
 const MOST_HEADER_BYTES: u64 = 16 << 20;
-
-/// SHA-256 of a text, 64 hexadecimal digits.
-pub(super) fn sha256_of(text: &str) -> String {
-    hex(&Sha256::digest(text.as_bytes()))
-}
-
-pub(super) fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
-}
 
 /// The run that a summary names.
 #[derive(Deserialize)]
@@ -41,7 +32,7 @@ struct Names {
 pub(super) fn check_parts(folder: &Path, run: &SourceText) -> Result<()> {
     let path = folder.join(LOG_FILE);
     let Some((log_run, log_end)) = of_log(&path) else { return Ok(()) };
-    if log_run != sha256_of(&run.text) {
+    if log_run != Digest::of(run.text.as_bytes()).to_string() {
         return other(&path, &run.path).fail();
     }
     let path = folder.join(SUMMARY_FILE);
@@ -61,7 +52,8 @@ pub(super) fn check_parts(folder: &Path, run: &SourceText) -> Result<()> {
 /// # Errors
 /// `E-LOG-RUN` if it names another one, or none.
 pub(super) fn belongs(part: &SourceText, named: Option<&str>, run: &SourceText) -> Result<()> {
-    if named == Some(sha256_of(&run.text).as_str()) { Ok(()) } else { other(&part.path, &run.path).fail() }
+    let run_sha256 = Digest::of(run.text.as_bytes()).to_string();
+    if named == Some(run_sha256.as_str()) { Ok(()) } else { other(&part.path, &run.path).fail() }
 }
 
 fn other(part: &Path, run: &Path) -> Diagnostic {

@@ -3,9 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::filter_entry::FilterEntry;
-use super::parts::{belongs, sha256_of};
+use super::parts::belongs;
 use super::toml_error;
 use engine::diagnostic::{Diagnostic, Result, SourceText};
+use engine::digest::Digest;
 use engine::experiment::Plan;
 use engine::filter::Catalogue;
 use engine::geometry::Twist;
@@ -90,7 +91,7 @@ pub fn policy_to_toml(
     let file = PolicyFile {
         format: FORMAT,
         behaviour: behaviour.to_owned(),
-        run_sha256: run.map(sha256_of),
+        run_sha256: run.map(|run| Digest::of(run.as_bytes()).to_string()),
         rows: settings.grid.rows,
         columns: settings.grid.columns,
         occupied: settings.grid.occupied,

@@ -4,7 +4,6 @@ use std::path::Path;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 use toml::Table;
 
 use super::filter_entry::FilterEntry;
@@ -13,6 +12,7 @@ use super::parts::{RUN_FILE, check_parts};
 use super::policy_file::{POLICY_FILE, policy_of_run};
 use super::{read_stored, toml_error};
 use engine::diagnostic::{Diagnostic, Result, SourceText};
+use engine::digest::Digest;
 use engine::experiment::{Decider, Leg, Plan};
 use engine::filter::Catalogue;
 use engine::geometry::Twist;
@@ -82,7 +82,7 @@ impl TextEntry {
 }
 
 fn sha256(text: &str) -> String {
-    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+    Digest::of(text.as_bytes()).to_string()
 }
 
 /// The text of `run.toml`.

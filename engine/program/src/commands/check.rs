@@ -5,10 +5,10 @@ use std::sync::atomic::AtomicBool;
 
 use engine::experiment::{Overrides, Plan};
 use insight::lint::{self, Exploits, Report, Severity};
+use insight::words::short;
 use pack::Runnable;
 
 use super::behaviour::open_to_look;
-use super::words::short;
 use crate::cli::CheckArguments;
 use crate::console::{Console, ConsoleError};
 

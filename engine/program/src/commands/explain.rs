@@ -9,10 +9,11 @@ use engine::robot::Robot;
 use insight::folder::create_folder;
 use insight::report::{FrameData, FramePanel, Picture, frame};
 use insight::store::{RecordedRun, StoredRun};
+use insight::words::short;
 use serde::Serialize;
 
 use super::sources::catalogue;
-use super::words::{fact, icon, motion, short};
+use super::words::{fact, icon, motion};
 use crate::cli::ExplainArguments;
 use crate::console::{Console, ConsoleError};
 

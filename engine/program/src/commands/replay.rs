@@ -6,11 +6,12 @@ use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::experiment::{Decider, Ledger, Overrides, Phase, Plan, Playback, Record, RuleScore, RunLog, run_seed};
 use engine::learner::Carry;
 use insight::store::{RecordedRun, StoredRun};
+use insight::words::short;
 use serde::Serialize;
 
 use super::sources::catalogue;
 use super::stop::{INTERRUPTED, on_ctrl_c};
-use super::words::{direction, motion, short};
+use super::words::{direction, motion};
 use crate::cli::ReplayArguments;
 use crate::console::{Console, ConsoleError};
 

@@ -10,10 +10,11 @@ use engine::script::Behaviour;
 use insight::folder::{create_folder, write_json};
 use insight::report::{PolicyDiffData, PolicyState, StateChange, policy_diff};
 use insight::store::{RecordedRun, StoredRun};
+use insight::words::short;
 use serde::Serialize;
 
 use super::sources::catalogue;
-use super::words::{icon, motion, short, signed};
+use super::words::{icon, motion, signed};
 use crate::cli::RescoreArguments;
 use crate::console::{Console, ConsoleError};
 

@@ -2,6 +2,7 @@
 
 use engine::diagnostic::printable;
 use engine::experiment::FactReasons;
+use insight::words::short;
 
 /// `0.25 m/s, 0.4 rad/s left`.
 pub(super) fn motion([linear, angular]: [f64; 2]) -> String {
@@ -44,13 +45,6 @@ pub(super) fn direction(angle_deg: f64) -> String {
     }
 }
 
-/// A number with at most three places.
-pub(super) fn short(value: f64) -> String {
-    let text = format!("{value:.3}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
-}
-
 /// A change: with its sign.
 pub(super) fn signed(value: f64) -> String {
     if value > 0.0 { format!("+{}", short(value)) } else { short(value) }
@@ -84,10 +78,5 @@ mod tests {
     #[test]
     fn a_state_is_drawn_row_by_row() {
         assert_eq!(icon(&[true, false, false, true], 2), ["■ ·", "· ■"]);
-    }
-
-    #[test]
-    fn a_number_has_no_more_places_than_it_needs() {
-        assert_eq!([short(-1.0), short(0.25), short(-0.0001), short(10.0)], ["-1", "0.25", "0", "10"]);
     }
 }

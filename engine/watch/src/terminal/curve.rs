@@ -8,8 +8,10 @@ use super::dots::{Dot, Dots, Rank};
 use super::ink::Ink;
 use super::screen::{heading, nothing, write};
 use super::view::View;
-use super::words::{columns, short, ticks, whole};
+use super::words::{columns, ticks};
 use engine::experiment::Phase;
+use engine::stats::Sorted;
+use insight::words::{typeset, whole};
 
 /// The shares of the seeds below and above the band.
 const BAND: [f64; 2] = [0.1, 0.9];
@@ -123,7 +125,7 @@ fn signs(view: &View, seeds: usize, before: bool, wide: bool) -> Vec<Span<'stati
 fn label_y(axes: &Axes, plot: Rect, buffer: &mut Buffer, dots: &mut Dots) {
     for at in ticks(axes.low, axes.high, usize::from(plot.height / 3).max(2)) {
         let y = axes.y(at);
-        let text = short(at);
+        let text = typeset(at);
         let width = (columns(&text) as u16).min(LEFT - 1);
         let row = plot.y + (y / 4.0) as u16;
         let place = Rect { x: plot.x - 1 - width, y: row.min(plot.y + plot.height - 1), width, height: 1 };
@@ -161,11 +163,7 @@ fn quantiles(curves: &[Vec<f64>], share: f64) -> Vec<f64> {
     let longest = curves.iter().map(Vec::len).max().unwrap_or(0);
     (0..longest)
         .filter_map(|window| {
-            let mut values: Vec<f64> = curves.iter().filter_map(|curve| curve.get(window).copied()).collect();
-            values.sort_by(f64::total_cmp);
-            let at = (values.len().checked_sub(1)?) as f64 * share;
-            let (low, high) = (values[at as usize], values[(at as usize + 1).min(values.len() - 1)]);
-            Some(low + (high - low) * at.fract())
+            curves.iter().filter_map(|curve| curve.get(window).copied()).collect::<Sorted>().quantile(share)
         })
         .collect()
 }

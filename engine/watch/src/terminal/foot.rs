@@ -8,8 +8,9 @@ use super::ink::Ink;
 use super::keys::KEYS;
 use super::screen::{ends, heading, write, write_all};
 use super::view::{SPEEDS, View};
-use super::words::{columns, fit, short, signed, whole};
+use super::words::{columns, fit, signed};
 use engine::experiment::{Phase, learned_at};
+use insight::words::{typeset, whole};
 
 /// Columns of the keys that are always named: help and quit.
 const LEAST_KEYS: usize = 16;
@@ -59,12 +60,12 @@ fn figures(view: &View, wide: bool) -> Vec<Span<'static>> {
     if let Some(test) = &seed.test {
         spans.push(Span::styled("; test: ", Ink::quiet()));
         let unit = if wide { "failures per 1,000 steps" } else { "failures/1,000" };
-        spans.push(Span::raw(format!("{} {unit}", short(test.failures_per_1000))));
+        spans.push(Span::raw(format!("{} {unit}", typeset(test.failures_per_1000))));
         if let Some(laps) = test.laps {
-            spans.push(Span::raw(format!(", {} laps", short(laps))));
+            spans.push(Span::raw(format!(", {} laps", typeset(laps))));
         }
         if wide {
-            spans.push(Span::raw(format!(", {} m/s", short(test.mean_speed))));
+            spans.push(Span::raw(format!(", {} m/s", typeset(test.mean_speed))));
         }
     }
     spans

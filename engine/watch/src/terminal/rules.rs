@@ -9,7 +9,8 @@ use super::ink::Ink;
 use super::screen::{heading, write, write_all};
 use super::story::part;
 use super::view::View;
-use super::words::{columns, fit, signed, total, whole};
+use super::words::{columns, fit, signed, total};
+use insight::words::whole;
 
 /// The most rules in the small panel.
 const MOST: usize = 8;

@@ -8,8 +8,9 @@ use ratatui::text::{Line, Span};
 use super::ink::Ink;
 use super::screen::{heading, nothing, write, write_all};
 use super::view::View;
-use super::words::{fit, motion, short, side, signed, whole};
+use super::words::{fit, motion, side, signed};
 use engine::experiment::{FactReasons, Record, RuleReasons, beam_angle_deg};
+use insight::words::{typeset, whole};
 
 /// The largest grid that is drawn cell by cell.
 const MOST_CELLS: [usize; 2] = [6, 12];
@@ -105,10 +106,10 @@ fn said(why: &RuleReasons, fired: bool) -> String {
 
 fn fact(fact: &FactReasons, beams: usize) -> String {
     let value = match fact.unit {
-        "metres" => format!("{} m", short(fact.value)),
-        "share" => format!("{} %", short(100.0 * fact.value)),
+        "metres" => format!("{} m", typeset(fact.value)),
+        "share" => format!("{} %", typeset(100.0 * fact.value)),
         "" => (fact.value != 0.0).to_string(),
-        unit => format!("{} {unit}", short(fact.value)),
+        unit => format!("{} {unit}", typeset(fact.value)),
     };
     let by = fact.beam.map_or_else(String::new, |number| format!(" ({})", beam(number, beams)));
     format!("{} = {value}{by}", fact.name)

@@ -3,31 +3,11 @@
 use ratatui::text::Span;
 
 use engine::diagnostic::printable;
+use insight::words::{typeset, whole};
 
-/// A whole number with commas.
-pub(super) fn whole(number: u64) -> String {
-    let digits = number.to_string();
-    let mut out = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            out.push(',');
-        }
-        out.push(digit);
-    }
-    out
-}
-
-/// At most two decimals, none of large numbers, with a real minus.
-pub(super) fn short(number: f64) -> String {
-    let decimals = if number.abs() >= 100.0 { 0 } else { 2 };
-    let text = format!("{number:.decimals$}");
-    let text = if decimals > 0 { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    if text == "-0" { "0".to_owned() } else { text.replace('-', "−") }
-}
-
-/// The same with its sign.
+/// A number with its sign.
 pub(super) fn signed(number: f64) -> String {
-    if number > 0.0 { format!("+{}", short(number)) } else { short(number) }
+    if number > 0.0 { format!("+{}", typeset(number)) } else { typeset(number) }
 }
 
 /// How much the sum of many rewards is: whole numbers with commas once they are large.
@@ -42,8 +22,8 @@ pub(super) fn total(number: f64) -> String {
 /// How a robot moves under an action.
 pub(super) fn motion([linear, angular]: [f64; 2]) -> String {
     let side = if angular > 0.0 { "left" } else { "right" };
-    let turn = if angular == 0.0 { "straight".to_owned() } else { format!("{} rad/s {side}", short(angular.abs())) };
-    format!("{} m/s, {turn}", short(linear))
+    let turn = if angular == 0.0 { "straight".to_owned() } else { format!("{} rad/s {side}", typeset(angular.abs())) };
+    format!("{} m/s, {turn}", typeset(linear))
 }
 
 /// Where a beam looks, degrees from straight ahead.
@@ -108,9 +88,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_short_and_have_a_real_minus() {
-        assert_eq!([whole(7), whole(1234), whole(1_234_567)], ["7", "1,234", "1,234,567"]);
-        assert_eq!([short(-0.001), short(-1.5), short(12.0), short(1234.5)], ["0", "−1.5", "12", "1234"]);
+    fn changes_and_sums_have_their_sign() {
         assert_eq!([signed(0.25), signed(-3.0), signed(0.0)], ["+0.25", "−3", "0"]);
         assert_eq!([total(-1234.4), total(12.5)], ["−1,234", "+12.5"]);
     }

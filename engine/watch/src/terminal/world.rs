@@ -11,9 +11,9 @@ use super::dots::{Dot, Dots, Rank};
 use super::ink::Ink;
 use super::screen::{heading, nothing};
 use super::view::View;
-use super::words::short;
 use engine::experiment::Record;
 use insight::page::{Document, Outline};
+use insight::words::typeset;
 
 /// Steps of the way that are drawn.
 const TRAIL_STEPS: usize = 400;
@@ -88,7 +88,7 @@ fn scale_bar(map: &Map) -> String {
     let cells = |metres: f64| (metres * map.scale / 2.0).round() as usize;
     let lengths = [50.0, 20.0, 10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1];
     let metres = lengths.into_iter().find(|metres| cells(*metres) <= 8).unwrap_or(0.1);
-    format!("├{}┤ {} m", "─".repeat(cells(metres).saturating_sub(2)), short(metres))
+    format!("├{}┤ {} m", "─".repeat(cells(metres).saturating_sub(2)), typeset(metres))
 }
 
 fn stand(map: &Map, solid: &Outline, dots: &mut Dots) {

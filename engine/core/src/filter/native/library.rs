@@ -6,7 +6,7 @@ use filter_api::abi::{ABI_VERSION, PLUGIN_SYMBOL, RawFrame, RawParameter, RawPlu
 use object::{Architecture, BinaryFormat, Object, ObjectSegment, ObjectSymbol};
 
 use crate::diagnostic::{Diagnostic, Result, printable};
-use crate::filter::digest::sha256;
+use crate::digest::Digest;
 use crate::filter::trust::{self, Trust};
 
 /// Reads a library whose digest is allowed, and checks that it is a whole library for this machine with a filter of this
@@ -17,26 +17,26 @@ use crate::filter::trust::{self, Trust};
 /// cause, and the cure.
 pub(super) fn read(path: &Path, trust: &Trust) -> Result<(Vec<u8>, String)> {
     let bytes = trust::read(path)?;
-    let digest = sha256(&bytes);
+    let digest = Digest::of(&bytes);
     if !trust.allows(&digest) {
         return Err(denied(path, trust, &digest));
     }
     check(path, &bytes)?;
-    Ok((bytes, digest))
+    Ok((bytes, digest.to_string()))
 }
 
-fn denied(path: &Path, trust: &Trust, digest: &str) -> Box<Diagnostic> {
+fn denied(path: &Path, trust: &Trust, digest: &Digest) -> Box<Diagnostic> {
     let shown = printable(&path.display().to_string());
-    let (code, message) = if trust.is_empty() {
-        ("E-NATIVE-DENIED", format!("'{shown}' is a native library and was not loaded"))
+    let what = if trust.is_empty() {
+        "is a native library and was not loaded"
     } else {
-        ("E-NATIVE-DENIED", format!("'{shown}' is not one of the native libraries that are allowed"))
+        "is not one of the native libraries that are allowed"
     };
     let help = format!(
         "a native filter can do all that you can do: read, change and send your files. If you trust it: \
          --allow-native=sha256:{digest}"
     );
-    Box::new(Diagnostic::new(code, message).help(help))
+    Box::new(Diagnostic::new("E-NATIVE-DENIED", format!("'{shown}' {what}")).help(help))
 }
 
 fn check(path: &Path, bytes: &[u8]) -> Result<()> {

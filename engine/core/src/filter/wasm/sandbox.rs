@@ -16,8 +16,8 @@ use wasmtime::{
 use super::layout::{FRAME_BYTES, Fault, PARAMETER_BYTES, PLUGIN_BYTES, describe};
 use super::limits::damaged;
 use crate::diagnostic::{Diagnostic, Result, printable};
+use crate::digest::Digest;
 use crate::filter::described::{Described, check_frames};
-use crate::filter::digest::sha256;
 use crate::filter::entry::{Entry, Form};
 use crate::filter::running::{Running, failed, refused};
 
@@ -45,7 +45,7 @@ pub(super) fn open(path: &Path, bytes: &[u8]) -> Result<Entry> {
     let descriptor = sandbox.describe()?.check("E-WASM-ABI", path)?;
     let create =
         move |values: &[f64]| -> Result<Box<dyn Running>> { Ok(Box::new(sandbox.create(descriptor, values)?)) };
-    let (path, sha256) = (Some(path.to_owned()), Some(sha256(bytes)));
+    let (path, sha256) = (Some(path.to_owned()), Some(Digest::of(bytes).to_string()));
     Ok(Entry { descriptor, form: Form::Wasm, path, sha256, create: Box::new(create) })
 }
 

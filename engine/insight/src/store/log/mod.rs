@@ -22,9 +22,10 @@ mod read;
 mod stored;
 
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
+use sha2::{Digest as _, Sha256};
 
 use engine::diagnostic::{Diagnostic, Result};
+use engine::digest::{Digest, hex};
 use engine::experiment::{Ledger, Plan, RunLog};
 
 pub(super) use read::log_names;
@@ -133,10 +134,6 @@ pub fn log_to_bytes(log: &RunLog, plan: &Plan, seed: u64, run: &str) -> Result<V
         file.extend_from_slice(&digest);
     }
     Ok(file)
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 fn damaged(message: String) -> Diagnostic {

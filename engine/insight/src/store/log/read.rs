@@ -2,10 +2,10 @@
 
 use super::{FORMAT, FORMAT_OF_LEGS, Header, MAGIC, PREFIX_BYTES, PhaseEntry, RuleEntry, damaged, hex};
 use engine::diagnostic::{Diagnostic, Result, printable};
+use engine::digest::Digest;
 use engine::experiment::{
     CHUNK_STEPS, DIGEST_BYTES, Ledger, LedgerLeg, MOST_STEPS, Plan, Record, RecordShape, RunLog, chained,
 };
-use sha2::{Digest, Sha256};
 
 /// Reads the bytes of a log that must belong to a plan under a seed, whose `run.toml` has the text `run`.
 ///
@@ -14,7 +14,7 @@ use sha2::{Digest, Sha256};
 /// `E-LOG-RUN` if it belongs to another run.
 pub fn read_log(bytes: &[u8], plan: &Plan, seed: u64, run: &str) -> Result<RunLog> {
     let (header, body) = header(bytes)?;
-    if header.run_sha256 != hex(&Sha256::digest(run.as_bytes())) || header.seed != seed {
+    if header.run_sha256 != Digest::of(run.as_bytes()).to_string() || header.seed != seed {
         let message =
             format!("the log belongs to another run: of '{}' with seed {}", printable(&header.behaviour), header.seed);
         return Diagnostic::new("E-LOG-RUN", message).help("keep log.bin and run.toml of one run together").fail();
@@ -84,7 +84,7 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8])> {
     let (Some(all_before), Some(sum)) = (bytes.get(..end), bytes.get(end..end + DIGEST_BYTES)) else {
         return damaged(format!("the log ends after {} bytes, inside its header", bytes.len())).fail();
     };
-    if Sha256::digest(all_before).as_slice() != sum {
+    if Digest::of(all_before).bytes() != sum {
         return damaged("the log's header does not match its checksum".to_owned()).fail();
     }
     let header: Header = serde_json::from_slice(&all_before[PREFIX_BYTES..])

@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use engine::diagnostic::Result;
 use engine::experiment::{Ledger, Plan, WINDOW_STEPS, in_parallel, learn_into};
+use engine::stats::Sorted;
 
 use super::stages::{SAMPLES, STAGES, Stages};
 use super::workload::empty_cycle;
@@ -114,10 +115,9 @@ fn median_us(calls: u64, mut call: impl FnMut(usize)) -> f64 {
         (0..SAMPLES).for_each(&mut call);
         (now() - started).as_secs_f64() * 1e6 / SAMPLES as f64
     };
-    median((0..calls.div_ceil(SAMPLES as u64)).map(round).collect())
+    median((0..calls.div_ceil(SAMPLES as u64)).map(round))
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+fn median(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().collect::<Sorted>().upper_median().unwrap_or(f64::NAN)
 }

@@ -10,6 +10,7 @@ mod legs;
 
 use super::{PREFIX_BYTES, log_to_bytes, read_log};
 use engine::diagnostic::{Kind, Result, SourceText};
+use engine::digest::hex;
 use engine::experiment::{DIGEST_BYTES, Ledger, LedgerLeg, Plan, RunLog, learn_into, test_and_watch};
 use engine::filter::Catalogue;
 use engine::script::Behaviour;
@@ -94,7 +95,7 @@ fn a_log_that_holds_only_the_beginning_of_a_run_knows_how_long_the_run_was() {
 #[test]
 fn the_last_digest_of_the_file_is_the_digest_of_the_log() {
     let tail = &SAMPLE.file[SAMPLE.file.len() - DIGEST_BYTES..];
-    assert_eq!(super::hex(tail), SAMPLE.log.sha256());
+    assert_eq!(hex(tail), SAMPLE.log.sha256());
 }
 
 #[test]

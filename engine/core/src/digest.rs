@@ -1,6 +1,6 @@
-//! SHA-256 as packs write it: 64 lower-case hexadecimal digits, nothing shorter.
+//! SHA-256 as it is written everywhere: 64 lower-case hexadecimal digits, nothing shorter.
 
-use std::fmt;
+use std::fmt::{self, Write};
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
@@ -17,7 +17,9 @@ impl Digest {
         Self(Sha256::digest(bytes).into())
     }
 
-    pub(super) fn bytes(&self) -> &[u8; 32] {
+    /// Its 32 bytes.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8; 32] {
         &self.0
     }
 
@@ -28,9 +30,25 @@ impl Digest {
     }
 }
 
+/// Bytes as lower-case hexadecimal digits, two for each.
+#[must_use]
+pub fn hex(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::with_capacity(2 * bytes.len()), |mut digits, byte| {
+        // Writing to a String cannot fail.
+        let _ = write!(digits, "{byte:02x}");
+        digits
+    })
+}
+
 impl fmt::Display for Digest {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
+        f.write_str(&hex(&self.0))
+    }
+}
+
+impl From<[u8; 32]> for Digest {
+    fn from(bytes: [u8; 32]) -> Self {
+        Self(bytes)
     }
 }
 
@@ -69,6 +87,12 @@ mod tests {
     fn a_digest_is_written_and_read_back() {
         assert_eq!(Digest::of(b"").to_string(), EMPTY);
         assert_eq!(Digest::try_from(EMPTY.to_owned()).unwrap(), Digest::of(b""));
+    }
+
+    #[test]
+    fn bytes_are_written_with_both_digits() {
+        assert_eq!(hex(&[0, 10, 255]), "000aff");
+        assert_eq!(Digest::from([0; 32]).short(), "000000000000");
     }
 
     #[test]
