@@ -24,6 +24,8 @@ mod contract;
 mod dependencies;
 /// Same seed, same bytes: twice, with one thread or two, stored and tested again.
 mod determinism;
+/// The pages for people: links, lengths, commands, the example that is worked by hand.
+mod docs;
 /// Every filter that ships keeps the contract, in every form.
 mod filters;
 /// One filter gives the same bytes linked in, in a native library and in WebAssembly.
