@@ -20,8 +20,12 @@ mod browser;
 mod combine;
 /// The C header says what the Rust side of the filter contract says, on 64 and on 32 bits.
 mod contract;
+/// Licences and sources of all dependencies are those that deny.toml allows.
+mod dependencies;
 /// Same seed, same bytes: twice, with one thread or two, stored and tested again.
 mod determinism;
+/// The pages for people: links, lengths, commands, the example that is worked by hand.
+mod docs;
 /// Every filter that ships keeps the contract, in every form.
 mod filters;
 /// One filter gives the same bytes linked in, in a native library and in WebAssembly.
