@@ -95,7 +95,7 @@ impl Watcher {
     }
 
     pub(super) fn watch(&mut self, cycle: &Cycle<SimulatedRobot>, step: &Step) {
-        let pose = cycle.robot().world().body().pose;
+        let pose = cycle.robot().world().body(0).pose;
         let scan = &cycle.observation().scan.ranges_m;
         let ranges = [scan[0], scan[scan.len() / 2], scan[scan.len() - 1]];
         match self.look {

@@ -57,7 +57,7 @@ impl CertaintyGrid {
 
     /// Adds the robot's present scan at its true pose.
     pub fn follow(&mut self, cycle: &Cycle<SimulatedRobot>) {
-        self.add(cycle.robot().world().body().pose, &cycle.observation().scan.ranges_m);
+        self.add(cycle.robot().world().body(0).pose, &cycle.observation().scan.ranges_m);
     }
 
     fn add(&mut self, robot: Pose, ranges_m: &[f32]) {

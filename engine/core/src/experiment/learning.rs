@@ -165,7 +165,7 @@ impl Learning {
             });
             self.steps += 1;
             ledger.add(cycle, &step, explored);
-            hash.step(&step, cycle.robot().world().body().pose);
+            hash.step(&step, cycle.robot().world().body(0).pose);
             early.follow(cycle.robot().world(), step.failed());
             if step.recover {
                 learner.forget();

@@ -163,7 +163,7 @@ fn drive(
         let action = choose(cycle.states());
         let step = cycle.step(action)?;
         steps += 1;
-        hash.step(&step, cycle.robot().world().body().pose);
+        hash.step(&step, cycle.robot().world().body(0).pose);
         truth.follow(cycle.robot().world());
         watch(&cycle, &step);
         trail.follow(cycle.robot().world(), step.failed());

@@ -23,7 +23,7 @@ impl Recorder {
     /// A trail of at most `steps` steps that begins where the robot is.
     pub(super) fn new(steps: u64, world: &World) -> Self {
         let mut leg = Vec::with_capacity(steps as usize + 1);
-        leg.push(point(world.body().pose));
+        leg.push(point(world.body(0).pose));
         Self { trail: Trail { legs: vec![leg], failures: Vec::new() }, left: steps }
     }
 
@@ -33,7 +33,7 @@ impl Recorder {
             return;
         }
         self.left -= 1;
-        let place = point(world.body().pose);
+        let place = point(world.body(0).pose);
         if let Some(leg) = self.trail.legs.last_mut() {
             leg.push(place);
         }
@@ -45,7 +45,7 @@ impl Recorder {
     /// Begins a new leg where the robot was put.
     pub(super) fn jump(&mut self, world: &World) {
         if self.left > 0 {
-            self.trail.legs.push(vec![point(world.body().pose)]);
+            self.trail.legs.push(vec![point(world.body(0).pose)]);
         }
     }
 

@@ -55,7 +55,7 @@ impl Truth {
     /// Begins at the robot's present pose.
     #[must_use]
     pub fn new(world: &World, period_s: f64, steps: u64) -> Self {
-        let pose = world.body().pose;
+        let pose = world.body(0).pose;
         let layout = world.layout();
         let progress = layout.lap.map(|lap| RouteProgress::new(&layout.routes[lap], Point2::new(pose.x_m, pose.y_m)));
         let prey_m = Vec::with_capacity(if world.prey().is_some() { steps as usize } else { 0 });
@@ -66,7 +66,7 @@ impl Truth {
 
     /// Follows one step.
     pub fn follow(&mut self, world: &World) {
-        let pose = world.body().pose;
+        let pose = world.body(0).pose;
         let moved = pose.distance_m(self.last);
         self.distance_m += moved;
         self.spell.path_m += moved;
@@ -87,7 +87,7 @@ impl Truth {
 
     /// The robot was put elsewhere: no progress is counted for that, and the spell begins anew.
     pub fn jump(&mut self, world: &World) {
-        let pose = world.body().pose;
+        let pose = world.body(0).pose;
         let layout = world.layout();
         if let (Some(progress), Some(lap)) = (&mut self.progress, layout.lap) {
             progress.jump(&layout.routes[lap], Point2::new(pose.x_m, pose.y_m));

@@ -161,7 +161,7 @@ impl Ledger {
             return;
         }
         let (world, facts) = (cycle.robot().world(), cycle.facts());
-        let (body, nearest_beam) = (world.body(), facts.nearest_beam());
+        let (body, nearest_beam) = (world.body(0), facts.nearest_beam());
         let record = Record {
             reward: step.reward,
             pose: body.pose,
