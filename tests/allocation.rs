@@ -7,7 +7,10 @@ use std::sync::atomic::AtomicBool;
 
 use engine::diagnostic::SourceText;
 use engine::experiment::{Ledger, Overrides, Plan, learn_into};
+use engine::geometry::{Pose, Twist};
 use engine::script::Behaviour;
+use engine::settings::Settings;
+use engine::world::World;
 
 use crate::support::root;
 
@@ -48,6 +51,22 @@ fn allocations(plan: &Plan, steps: u64) -> u64 {
     let learned = learn_into(&plan, 7, &AtomicBool::new(false), &|_| (), &mut ledger).unwrap();
     // The policy at the end has a row for each state that was seen; the loop itself has none.
     ALLOCATIONS.get() - before - learned.policy.rows().iter().flatten().count() as u64
+}
+
+#[test]
+fn a_world_with_several_bodies_that_run_into_one_another_allocates_nothing() {
+    let settings = Settings::default();
+    let layout = engine::world::Layout::load(&root().join("worlds/object.toml"), &settings.robot.body).unwrap();
+    let mut world = World::new(Arc::new(layout), &[settings.robot; 4], settings.run.period_s, 1);
+    for index in 0..4 {
+        world.place(index, Pose::new(1.0 + 0.8 * index as f64, 0.0, 0.0));
+    }
+    let commands = [0.4, 0.3, 0.2, 0.1].map(|linear| Twist::new(linear, 0.0));
+    world.advance(&commands);
+    let before = ALLOCATIONS.get();
+    let touching = (0..100).filter(|_| world.advance(&commands)[..3].iter().all(|motion| motion.contact)).count();
+    assert_eq!(ALLOCATIONS.get(), before);
+    assert!(touching > 0);
 }
 
 #[test]

@@ -36,8 +36,17 @@ impl Random {
     /// The stream of one consumer under a run's seed.
     #[must_use]
     pub fn new(seed: u64, stream: Stream) -> Self {
+        Self::of_body(seed, stream, 0)
+    }
+
+    /// The stream of one consumer in one of the bodies of a world; for body 0 it is that of [`Random::new`].
+    ///
+    /// The body's index stands in the upper half of the stream's number, above every named stream, so that no two
+    /// bodies and no two consumers share one.
+    #[must_use]
+    pub fn of_body(seed: u64, stream: Stream, body: u32) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
-        generator.set_stream(stream as u64);
+        generator.set_stream(u64::from(body) << 32 | stream as u64);
         Self { generator }
     }
 
@@ -103,6 +112,14 @@ mod tests {
         assert_eq!(draw(7, Stream::Drive), draw(7, Stream::Drive));
         assert_ne!(draw(7, Stream::Drive), draw(7, Stream::Laser));
         assert_ne!(draw(7, Stream::Drive), draw(8, Stream::Drive));
+    }
+
+    #[test]
+    fn the_first_body_has_the_streams_of_a_robot_alone_and_the_others_have_their_own() {
+        let draw = |stream, body| Random::of_body(7, stream, body).unit();
+        assert_eq!(draw(Stream::Drive, 0), Random::new(7, Stream::Drive).unit());
+        let bodies: Vec<_> = (0..4).flat_map(|body| [draw(Stream::Drive, body), draw(Stream::Camera, body)]).collect();
+        assert!((1..bodies.len()).all(|index| !bodies[..index].contains(&bodies[index])), "{bodies:?}");
     }
 
     #[test]

@@ -22,7 +22,7 @@ const PLACES: usize = 16;
 /// `E-FILTER-BLIND` if they leave none anywhere.
 pub(super) fn check(plan: &Plan) -> Result<()> {
     let (settings, layout) = (&plan.settings, &plan.layout);
-    let mut world = World::new(Arc::clone(layout), &settings.robot, settings.run.period_s, 0);
+    let mut world = World::new(Arc::clone(layout), &[settings.robot], settings.run.period_s, 0);
     // Noise would be taken for something seen.
     let mut camera = Camera::new(&layout.scene, &CameraSettings { noise: 0.0, ..settings.camera.clone() }, 0);
     let mut chain = plan.chain()?;
@@ -34,8 +34,8 @@ pub(super) fn check(plan: &Plan) -> Result<()> {
     for place in layout.starts.iter().copied().chain(along) {
         for heading in 0..HEADINGS {
             let turn = TAU * heading as f64 / HEADINGS as f64;
-            world.place(Pose::new(place.x_m, place.y_m, place.yaw_rad + turn));
-            camera.render(&world.body().world_from_robot(), world.moving(), &mut image);
+            world.place(0, Pose::new(place.x_m, place.y_m, place.yaw_rad + turn));
+            camera.render(&world.body(0).world_from_robot(), world.seen_by(0), &mut image);
             // A filter that fails says so itself, in the run.
             if chain.apply(&image).is_ok_and(|mask| mask.contains(&255)) {
                 return Ok(());

@@ -34,11 +34,11 @@ impl Recovery {
         for _ in 0..DRAWS {
             let base = self.base(world)?;
             let pose = self.shifted(base);
-            if world.is_safe(pose) {
+            if world.is_safe(0, pose) {
                 return Ok(pose);
             }
         }
-        let safe = |pose: &Pose| world.is_safe(*pose);
+        let safe = |pose: &Pose| world.is_safe(0, *pose);
         let found = if self.settings.to == RecoverTo::Behind {
             self.farther_behind(world).find(safe)
         } else {
@@ -52,7 +52,7 @@ impl Recovery {
         let layout = world.layout();
         match self.settings.to {
             RecoverTo::Nearest => {
-                let pose = world.body().pose;
+                let pose = world.body(0).pose;
                 let route = lap(layout).ok_or_else(|| self.no_route(layout))?;
                 Ok(route.pose_at(route.nearest(Point2::new(pose.x_m, pose.y_m)).0))
             }
@@ -137,7 +137,6 @@ fn ends(layout: &Layout, code: &'static str, message: String) -> Diagnostic {
 mod tests {
     use super::*;
     use crate::diagnostic::SourceText;
-    use crate::geometry::Twist;
     use crate::settings::Settings;
     use std::f64::consts::FRAC_PI_2;
     use std::sync::Arc;
@@ -150,7 +149,7 @@ mod tests {
     fn world(text: &str) -> World {
         let robot = Settings::default().robot;
         let layout = Layout::parse(SourceText::new("test.toml", text), &robot.body);
-        World::new(Arc::new(layout.unwrap_or_else(|error| panic!("{error:?}"))), &robot, 0.5, 1)
+        World::new(Arc::new(layout.unwrap_or_else(|error| panic!("{error:?}"))), &[robot], 0.5, 1)
     }
 
     fn exact(to: RecoverTo) -> Recovery {
@@ -166,7 +165,7 @@ mod tests {
         let mut world = world(&format!("{CORNER}{MOVER}"));
         assert!(is_near(exact(RecoverTo::Behind).pose(&world).unwrap(), 0.9, 0.0, 0.0));
         for _ in 0..7 {
-            world.advance(Twist::default());
+            world.advance(&[]);
         }
         // 2 + 3.5 m along: 1.5 m past the corner; 1.1 m less is on the second side too.
         assert!(is_near(exact(RecoverTo::Behind).pose(&world).unwrap(), 4.0, 0.4, FRAC_PI_2));
@@ -176,7 +175,7 @@ mod tests {
     fn a_mover_that_stands_at_the_end_of_its_route_is_followed_there() {
         let mut world = world(&format!("{CORNER}{MOVER}"));
         for _ in 0..100 {
-            world.advance(Twist::default());
+            world.advance(&[]);
         }
         assert!(is_near(exact(RecoverTo::Behind).pose(&world).unwrap(), 4.0, 2.9, FRAC_PI_2));
     }

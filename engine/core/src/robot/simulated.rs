@@ -27,16 +27,16 @@ impl SimulatedRobot {
     /// # Errors
     /// If no pose is safe, or the camera shows nothing from there.
     pub fn new(layout: &Arc<Layout>, settings: &Settings, seed: u64) -> Result<Self> {
-        let mut world = World::new(Arc::clone(layout), &settings.robot, settings.run.period_s, seed)
+        let mut world = World::new(Arc::clone(layout), &[settings.robot], settings.run.period_s, seed)
             .with_mover_speed(settings.movers.speed);
         let camera = Camera::new(&layout.scene, &settings.camera, seed);
         let laser = Laser::new(&layout.scene, &settings.laser, seed);
         let mut recovery = Recovery::new(&settings.recovery, seed);
         let start = recovery.pose(&world)?;
-        world.place(start);
+        world.place(0, start);
         // Noise would hide a blank image from the test.
         let mut quiet = Camera::new(&layout.scene, &CameraSettings { noise: 0.0, ..settings.camera.clone() }, seed);
-        self_test(&mut quiet, &world.body().world_from_robot(), world.moving())?;
+        self_test(&mut quiet, &world.body(0).world_from_robot(), world.seen_by(0))?;
         let (watch, motion) = (CameraWatch::new(), Motion::default());
         Ok(Self { world, camera, laser, watch, recovery, motion, moved: false })
     }
@@ -50,10 +50,10 @@ impl SimulatedRobot {
 
 impl Robot for SimulatedRobot {
     fn observe(&mut self, observation: &mut Observation) -> Result<()> {
-        let world_from_robot = self.world.body().world_from_robot();
-        self.camera.render(&world_from_robot, self.world.moving(), &mut observation.image);
+        let world_from_robot = self.world.body(0).world_from_robot();
+        self.camera.render(&world_from_robot, self.world.seen_by(0), &mut observation.image);
         self.watch.check(&observation.image, self.moved)?;
-        self.laser.scan(&world_from_robot, self.world.moving(), &mut observation.scan);
+        self.laser.scan(&world_from_robot, self.world.seen_by(0), &mut observation.scan);
         observation.contact = self.motion.contact;
         observation.fallen = self.motion.fallen;
         observation.odometry = self.motion.odometry;
@@ -61,22 +61,22 @@ impl Robot for SimulatedRobot {
     }
 
     fn act(&mut self, twist: Twist) -> Result<()> {
-        let before = self.world.body().pose;
-        self.motion = self.world.advance(twist);
-        self.moved = self.world.body().pose != before;
+        let before = self.world.body(0).pose;
+        self.motion = self.world.advance(&[twist]).first().copied().unwrap_or_default();
+        self.moved = self.world.body(0).pose != before;
         Ok(())
     }
 
     fn recover(&mut self) -> Result<()> {
         let pose = self.recovery.pose(&self.world)?;
-        self.world.place(pose);
+        self.world.place(0, pose);
         self.motion = Motion::default();
         self.moved = true;
         Ok(())
     }
 
     fn whereabouts(&self) -> Option<Whereabouts> {
-        let body = self.world.body();
+        let body = self.world.body(0);
         Some(Whereabouts { pose: body.pose, z_m: body.z_m })
     }
 
@@ -89,7 +89,7 @@ impl Robot for SimulatedRobot {
         let mut camera = self.camera.clone();
         camera.set_frames(camera.frames().saturating_sub(1));
         let mut image = Image::new(0, 0);
-        camera.render(&self.world.body().world_from_robot(), self.world.moving(), &mut image);
+        camera.render(&self.world.body(0).world_from_robot(), self.world.seen_by(0), &mut image);
         Some(image)
     }
 }

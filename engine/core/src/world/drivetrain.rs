@@ -1,7 +1,7 @@
 //! From the commanded speeds to the real ones: lag, noise, slip.
 
 use crate::geometry::Twist;
-use crate::random::{Random, Stream};
+use crate::random::Random;
 use crate::settings::RobotSettings;
 
 /// The drive of the robot: wheels that follow a command with a first-order lag, and a ground on which they skid.
@@ -20,7 +20,7 @@ pub(super) struct Drivetrain {
 }
 
 impl Drivetrain {
-    pub(super) fn new(robot: &RobotSettings, period_s: f64, seed: u64) -> Self {
+    pub(super) fn new(robot: &RobotSettings, period_s: f64, random: Random) -> Self {
         // 0.5 / 0.05 must be ten ticks, whatever its last bit says.
         let ticks = (period_s / robot.tick_s - 1e-9).ceil().max(1.0);
         let tick_s = period_s / ticks;
@@ -39,7 +39,7 @@ impl Drivetrain {
             grip: 1.0 - robot.slip,
             wheels: Twist::default(),
             factors: Twist::new(1.0, 1.0),
-            random: Random::new(seed, Stream::Drive),
+            random,
         }
     }
 
@@ -82,14 +82,19 @@ impl Drivetrain {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::Stream;
     use crate::settings::BodyShape;
 
     const EXACT: RobotSettings =
         RobotSettings { body: BodyShape::pioneer2at(), lag_s: 0.0, speed_noise: 0.0, slip: 0.0, tick_s: 0.05 };
 
+    fn drivetrain(robot: &RobotSettings, period_s: f64) -> Drivetrain {
+        Drivetrain::new(robot, period_s, Random::new(1, Stream::Drive))
+    }
+
     fn distance(tick_s: f64) -> f64 {
         let robot = RobotSettings { lag_s: 0.15, tick_s, ..EXACT };
-        let mut drive = Drivetrain::new(&robot, 0.5, 1);
+        let mut drive = drivetrain(&robot, 0.5);
         drive.begin();
         (0..drive.ticks).map(|_| drive.tick(Twist::new(0.4, 0.0)).linear_m_per_s * drive.tick_s).sum()
     }
@@ -105,15 +110,15 @@ mod tests {
 
     #[test]
     fn half_a_second_has_ten_ticks_of_fifty_milliseconds() {
-        let drive = Drivetrain::new(&EXACT, 0.5, 1);
+        let drive = drivetrain(&EXACT, 0.5);
         assert_eq!((drive.ticks, drive.tick_s), (10, 0.05));
-        assert_eq!(Drivetrain::new(&EXACT, 0.33, 1).ticks, 7);
+        assert_eq!(drivetrain(&EXACT, 0.33).ticks, 7);
     }
 
     #[test]
     fn slip_takes_a_share_of_the_turn_only() {
         let robot = RobotSettings { slip: 0.25, ..EXACT };
-        let mut drive = Drivetrain::new(&robot, 0.5, 1);
+        let mut drive = drivetrain(&robot, 0.5);
         drive.begin();
         let wheels = drive.tick(Twist::new(0.2, 0.8));
         assert_eq!(wheels, Twist::new(0.2, 0.8));

@@ -1,8 +1,9 @@
-//! TRUTH: what stands, what moves, and what the robot's body does among it.
+//! The truth of a run: what stands, what moves, and what the bodies of robots do among it.
 //!
-//! [`Layout`] is a world file, read once; [`World`] is the state of one robot in it. Sensors look at it through
-//! [`World::layout`], [`World::moving`] and [`World::body`]; rewards and states never do.
+//! [`Layout`] is a world file, read once; [`World`] is the state of the bodies in it. Sensors look at it through
+//! [`World::layout`], [`World::seen_by`] and [`World::body`]; rewards and states never do.
 
+mod body;
 mod contact;
 mod drivetrain;
 mod layout;
@@ -15,82 +16,71 @@ mod stance;
 mod terrain;
 #[cfg(test)]
 mod tests;
+mod traffic;
 mod vehicle;
 
+pub use body::{Body, Motion};
 pub use layout::Layout;
 pub use mover::Mover;
 pub use route::Route;
 pub use route_progress::RouteProgress;
 
-use crate::geometry::{Isometry3, Pose, Twist, rotation};
+use crate::geometry::{Pose, Twist};
+use crate::random::{Random, Stream};
 use crate::settings::RobotSettings;
 use drivetrain::Drivetrain;
-use mover::Traffic;
-use nalgebra::{Translation3, UnitQuaternion};
 use scene::Solid;
 use stance::Stance;
 use std::sync::Arc;
+use traffic::Traffic;
 use vehicle::Vehicle;
 
-/// Where the robot's body is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Body {
-    /// Its place and heading on the floor plan.
-    pub pose: Pose,
-    /// Height of the ground under its centre, metres.
-    pub z_m: f64,
-    /// Nose down when positive, radians.
-    pub pitch_rad: f64,
-    /// Right side down when positive, radians.
-    pub roll_rad: f64,
-}
-
-impl Body {
-    /// The transform from the robot's axes, whose origin lies on the ground under its centre, to the world's.
-    #[must_use]
-    pub fn world_from_robot(&self) -> Isometry3 {
-        let turn = UnitQuaternion::from_rotation_matrix(&rotation(self.pose.yaw_rad, self.pitch_rad, self.roll_rad));
-        Isometry3::from_parts(Translation3::new(self.pose.x_m, self.pose.y_m, self.z_m), turn)
-    }
-}
-
-/// What happened in one control period.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Motion {
-    /// The body touched something.
-    pub contact: bool,
-    /// The body lies below an edge, since this period or an earlier one.
-    pub fallen: bool,
-    /// Mean speed of the wheels, as encoders measure it: before slip.
-    pub odometry: Twist,
-}
-
-/// One robot in a world.
+/// The bodies of one or more robots in a world.
+///
+/// A body is named by its index in the list that the world was made with. Bodies stand in the way of each other, as
+/// upright boxes and cylinders of the material `plain`.
+///
+/// In a control period the bodies drive one after another in the order of their indices, each through the whole period;
+/// then the movers go on. So a body meets those of lower index where they have arrived, and those of higher index and
+/// the movers where they stood when the period began: of two that make for one place the first gets it, and a body
+/// close behind one of higher index runs into it although that drives on.
 #[derive(Debug, Clone)]
 pub struct World {
     layout: Arc<Layout>,
-    robot: Vehicle,
+    vehicles: Vec<Vehicle>,
+    motions: Vec<Motion>,
     traffic: Traffic,
+    /// The material of bodies.
+    material: usize,
     period_s: f64,
     periods: u64,
     mover_speed: f64,
 }
 
 impl World {
-    /// A robot at rest at the first start. `period_s` is the time between two commands, seconds.
+    /// Bodies at rest: the first at the first start, each further one at the first start that is safe for it, or at the
+    /// first of all if none is. `period_s` is the time between two commands, seconds.
+    ///
+    /// The first body draws the same random numbers whether there are others or not.
     #[must_use]
-    pub fn new(layout: Arc<Layout>, robot: &RobotSettings, period_s: f64, seed: u64) -> Self {
+    pub fn new(layout: Arc<Layout>, bodies: &[RobotSettings], period_s: f64, seed: u64) -> Self {
         let start = layout.starts.first().copied().unwrap_or_default();
-        let drive = Drivetrain::new(robot, period_s, seed);
-        let traffic = Traffic::new(&layout.movers, &layout.routes);
-        Self {
-            robot: Vehicle::new(robot.body, drive, &layout, start),
-            traffic,
-            period_s,
-            periods: 0,
-            mover_speed: 1.0,
-            layout,
+        let vehicle = |(index, robot): (u32, &RobotSettings)| {
+            let drive = Drivetrain::new(robot, period_s, Random::of_body(seed, Stream::Drive, index));
+            Vehicle::new(robot.body, drive, &layout, start, bodies.len().saturating_sub(1))
+        };
+        let vehicles: Vec<_> = (0..).zip(bodies).map(vehicle).collect();
+        let material = layout.scene.parts().materials.iter().position(|material| material.name == layout::PLAIN);
+        let material = material.unwrap_or(layout.scene.parts().floor);
+        let solids = vehicles.iter().map(|vehicle| vehicle.solid(material)).collect();
+        let traffic = Traffic::new(&layout.movers, &layout.routes, solids);
+        let motions = vec![Motion::default(); vehicles.len()];
+        let mut world = Self { layout, vehicles, motions, traffic, material, period_s, periods: 0, mover_speed: 1.0 };
+        for index in 1..world.vehicles.len() {
+            let safe = world.layout.starts.iter().copied().find(|start| world.is_safe(index, *start));
+            safe.into_iter().for_each(|start| world.place(index, start));
         }
+        world
     }
 
     /// The same world with every mover `speed` times as fast as its file says.
@@ -99,27 +89,56 @@ impl World {
         Self { mover_speed: speed, ..self }
     }
 
-    /// Puts the robot at rest at `pose`, on the highest platform or ramp there or else on the floor.
-    pub fn place(&mut self, pose: Pose) {
-        self.robot.place(&self.layout, pose);
+    /// Puts a body at rest at `pose`, on the highest platform or ramp there or else on the floor.
+    ///
+    /// # Panics
+    /// If there is no such body.
+    pub fn place(&mut self, index: usize, pose: Pose) {
+        self.vehicles[index].place(&self.layout, pose);
+        self.show(index);
     }
 
-    /// Drives for one control period. A robot that touches something stops there and tries again in the next tick; a
-    /// robot that has fallen lies still until it is placed. A thing that it overlaps already does not hold it.
-    pub fn advance(&mut self, command: Twist) -> Motion {
-        let mut motion = self.robot.advance(&self.layout, &self.traffic, command);
-        self.periods += 1;
-        if !self.traffic.is_empty() {
-            self.traffic.arrange(&self.layout.movers, &self.layout.routes, self.mover_time_s());
-            motion.contact |= self.traffic.touches(self.robot.shape(), self.robot.stance());
+    /// Drives for one control period, with a command for each body; a body without one is to stand. Returns what
+    /// happened to each body.
+    ///
+    /// A body that touches something stops there and tries again in the next tick; one that has fallen lies still until
+    /// it is placed. A thing that a body overlaps already does not hold it.
+    pub fn advance(&mut self, commands: &[Twist]) -> &[Motion] {
+        self.motions.fill(Motion::default());
+        for index in 0..self.vehicles.len() {
+            let command = commands.get(index).copied().unwrap_or_default();
+            let vehicle = &mut self.vehicles[index];
+            let motion = vehicle.advance(&self.layout, &self.traffic, index, command);
+            self.motions[index] = Motion { contact: motion.contact | self.motions[index].contact, ..motion };
+            for &struck in vehicle.struck() {
+                self.motions[struck].contact = true;
+            }
+            self.show(index);
         }
-        motion
+        self.periods += 1;
+        if self.traffic.has_movers() {
+            self.traffic.arrange(&self.layout.movers, &self.layout.routes, self.mover_time_s());
+            for (motion, vehicle) in self.motions.iter_mut().zip(&self.vehicles) {
+                motion.contact |= self.traffic.touches(vehicle.shape(), vehicle.stance());
+            }
+        }
+        &self.motions
     }
 
-    /// Where the robot's body is.
+    /// Lets the others know where a body is.
+    fn show(&mut self, index: usize) {
+        if self.traffic.has_bodies() {
+            self.traffic.put(index, self.vehicles[index].solid(self.material));
+        }
+    }
+
+    /// Where a body is.
+    ///
+    /// # Panics
+    /// If there is no such body.
     #[must_use]
-    pub fn body(&self) -> Body {
-        let Stance { pose, z_m, slope_x, slope_y, .. } = *self.robot.stance();
+    pub fn body(&self, index: usize) -> Body {
+        let Stance { pose, z_m, slope_x, slope_y, .. } = *self.vehicles[index].stance();
         if slope_x == 0.0 && slope_y == 0.0 {
             return Body { pose, z_m, pitch_rad: 0.0, roll_rad: 0.0 };
         }
@@ -130,7 +149,17 @@ impl World {
     /// The movers' solids where they are now, in world coordinates, in the order of the file.
     #[must_use]
     pub fn moving(&self) -> &[Solid] {
-        self.traffic.solids()
+        self.traffic.movers()
+    }
+
+    /// All that moves besides one body, for its sensors: the bodies of higher index, the movers, the bodies of lower
+    /// index, where they are now. For a body that is alone that is [`World::moving`].
+    ///
+    /// # Panics
+    /// If there are several bodies and not this one.
+    #[must_use]
+    pub fn seen_by(&self, index: usize) -> &[Solid] {
+        self.traffic.seen_by(index)
     }
 
     /// Where the first mover is now.
@@ -152,18 +181,25 @@ impl World {
         self.time_s() * self.mover_speed
     }
 
-    /// Time since the world began, seconds. Placing the robot does not turn it back.
+    /// Time since the world began, seconds. Placing a body does not turn it back.
     #[must_use]
     pub fn time_s(&self) -> f64 {
         self.periods as f64 * self.period_s
     }
 
-    /// Whether a robot could be placed at `pose`: nothing touches it, and all of its footprint has ground below.
+    /// Whether a body could be placed at `pose`: nothing touches it there, no mover and no other body either, and all of
+    /// its footprint has ground below.
+    ///
+    /// # Panics
+    /// If there is no such body.
     #[must_use]
-    pub fn is_safe(&self, pose: Pose) -> bool {
-        let shape = self.robot.shape();
+    pub fn is_safe(&self, index: usize, pose: Pose) -> bool {
+        let shape = self.vehicles[index].shape();
         let stance = self.layout.terrain().put(&self.layout.scene, shape, pose).stance;
-        self.layout.obstruction(shape, pose).is_none() && !self.traffic.touches(shape, &stance)
+        let mut others = self.traffic.others(index, pose, shape.radius_m());
+        self.layout.obstruction(shape, pose).is_none()
+            && !self.traffic.touches(shape, &stance)
+            && !others.any(|(_, other)| other.touches(shape, &stance))
     }
 
     /// What the world was made from.

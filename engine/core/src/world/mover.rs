@@ -1,11 +1,8 @@
 //! Things that drive along a route by themselves: the prey of a following behaviour.
 
-use super::obstacle::Obstacle;
 use super::route::Route;
 use super::scene::Solid;
-use super::stance::Stance;
 use crate::geometry::{Point3, Pose};
-use crate::settings::BodyShape;
 
 /// A body of boxes that follows a route at constant speed; at the end of an open route it stops.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,45 +43,5 @@ impl Mover {
             place.yaw_rad = at.yaw_rad + solid.yaw_rad;
         }
         rest
-    }
-}
-
-/// The solids of all movers at the present time.
-#[derive(Debug, Clone)]
-pub(super) struct Traffic {
-    solids: Vec<Solid>,
-    obstacles: Vec<Obstacle>,
-}
-
-impl Traffic {
-    /// All movers at time 0.
-    pub(super) fn new(movers: &[Mover], routes: &[Route]) -> Self {
-        let solids: Vec<Solid> = movers.iter().flat_map(|mover| mover.solids.iter().cloned()).collect();
-        let mut traffic = Self { obstacles: solids.iter().map(Obstacle::new).collect(), solids };
-        traffic.arrange(movers, routes, 0.0);
-        traffic
-    }
-
-    /// Moves everything to where it is at a time; the movers must be the same ones.
-    pub(super) fn arrange(&mut self, movers: &[Mover], routes: &[Route], time_s: f64) {
-        let mut places = self.solids.as_mut_slice();
-        for mover in movers {
-            places = mover.arrange(mover.pose_at(routes, time_s), places);
-        }
-        for (solid, obstacle) in self.solids.iter().zip(&mut self.obstacles) {
-            *obstacle = Obstacle::new(solid);
-        }
-    }
-
-    pub(super) fn is_empty(&self) -> bool {
-        self.solids.is_empty()
-    }
-
-    pub(super) fn solids(&self) -> &[Solid] {
-        &self.solids
-    }
-
-    pub(super) fn touches(&self, shape: &BodyShape, stance: &Stance) -> bool {
-        self.obstacles.iter().any(|obstacle| obstacle.touches(shape, stance))
     }
 }

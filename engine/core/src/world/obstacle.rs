@@ -34,6 +34,16 @@ impl Obstacle {
         Self { x: solid.centre.x, y: solid.centre.y, sin, cos, area, bottom_m, top_m }
     }
 
+    /// Whether a circle around its middle that holds it comes within `reach_m` of a place.
+    pub(super) fn is_within(&self, x: f64, y: f64, reach_m: f64) -> bool {
+        let radius = match self.area {
+            FloorArea::Rectangle { half_x, half_y, .. } => (half_x * half_x + half_y * half_y).sqrt(),
+            FloorArea::Circle { radius } => radius,
+        };
+        let (x, y, reach_m) = (x - self.x, y - self.y, reach_m + radius);
+        x * x + y * y <= reach_m * reach_m
+    }
+
     /// A point of the world in the solid's axes.
     pub(super) fn local(&self, x: f64, y: f64) -> (f64, f64) {
         let (x, y) = (x - self.x, y - self.y);

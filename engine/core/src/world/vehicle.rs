@@ -1,15 +1,16 @@
-//! The robot's body: it drives, stops at what it touches, climbs, and falls.
+//! One body in motion: it drives, stops at what it touches, climbs, and falls.
 
-use super::Motion;
+use super::body::Motion;
 use super::drivetrain::Drivetrain;
 use super::layout::Layout;
-use super::mover::Traffic;
+use super::scene::{Shape, Solid};
 use super::stance::Stance;
 use super::terrain::Terrain;
-use crate::geometry::{Pose, Twist};
-use crate::settings::BodyShape;
+use super::traffic::Traffic;
+use crate::geometry::{Point3, Pose, Twist, Vector3};
+use crate::settings::{BodyShape, Footprint};
 
-/// The body and its drive.
+/// A body and its drive.
 #[derive(Debug, Clone)]
 pub(super) struct Vehicle {
     shape: BodyShape,
@@ -20,6 +21,10 @@ pub(super) struct Vehicle {
     near: Vec<u32>,
     /// Those of them that the body does not overlap already.
     blocking: Vec<u32>,
+    /// Other bodies that can be reached and are not overlapped already.
+    others: Vec<usize>,
+    /// Other bodies that were touched in the last period.
+    struck: Vec<usize>,
 }
 
 /// All that can stop the body in one period.
@@ -27,14 +32,26 @@ struct Obstacles<'a> {
     shape: &'a BodyShape,
     terrain: &'a Terrain,
     blocking: &'a [u32],
-    /// None if nothing moves, or the body overlaps a mover already.
-    traffic: Option<&'a Traffic>,
+    traffic: &'a Traffic,
+    others: &'a [usize],
+    /// False if there are no movers, or the body overlaps one already.
+    movers: bool,
 }
 
 impl Obstacles<'_> {
+    fn is_empty(&self) -> bool {
+        self.blocking.is_empty() && self.others.is_empty() && !self.movers
+    }
+
     fn block(&self, body: &Stance) -> bool {
         self.blocking.iter().any(|&index| self.terrain.obstacle(index).touches(self.shape, body))
-            || self.traffic.is_some_and(|traffic| traffic.touches(self.shape, body))
+            || (self.movers && self.traffic.touches(self.shape, body))
+            || self.met(body).next().is_some()
+    }
+
+    /// The other bodies that stand in the way.
+    fn met(&self, body: &Stance) -> impl Iterator<Item = usize> {
+        self.others.iter().copied().filter(|&other| self.traffic.body(other).touches(self.shape, body))
     }
 
     /// The last free stance on the way of a blocked tick, to a sixteenth of it, and the share of the tick until there.
@@ -52,9 +69,18 @@ impl Obstacles<'_> {
 }
 
 impl Vehicle {
-    pub(super) fn new(shape: BodyShape, drive: Drivetrain, layout: &Layout, pose: Pose) -> Self {
-        let stance = layout.terrain().put(&layout.scene, &shape, pose).stance;
-        Self { shape, drive, stance, fallen: false, near: Vec::with_capacity(64), blocking: Vec::with_capacity(64) }
+    /// A body at rest at `pose`, with room for meeting `others` bodies.
+    pub(super) fn new(shape: BodyShape, drive: Drivetrain, layout: &Layout, pose: Pose, others: usize) -> Self {
+        Self {
+            shape,
+            drive,
+            stance: layout.terrain().put(&layout.scene, &shape, pose).stance,
+            fallen: false,
+            near: Vec::with_capacity(64),
+            blocking: Vec::with_capacity(64),
+            others: Vec::with_capacity(others),
+            struck: Vec::with_capacity(others),
+        }
     }
 
     pub(super) fn shape(&self) -> &BodyShape {
@@ -65,6 +91,24 @@ impl Vehicle {
         &self.stance
     }
 
+    /// The other bodies that it touched in the last period.
+    pub(super) fn struck(&self) -> &[usize] {
+        &self.struck
+    }
+
+    /// The body as others meet and see it: upright, whatever slope it stands on.
+    pub(super) fn solid(&self, material: usize) -> Solid {
+        let (ahead_m, half_z) = (self.shape.footprint.ahead_m(), 0.5 * self.shape.height_m);
+        let [half_x, half_y] = self.shape.footprint.half_m();
+        let shape = match self.shape.footprint {
+            Footprint::Rectangle { .. } => Shape::Box { half_m: Vector3::new(half_x, half_y, half_z) },
+            Footprint::Round { radius_m } => Shape::Cylinder { radius_m, half_height_m: half_z },
+        };
+        let (x, y) = self.stance.world(ahead_m, 0.0);
+        let centre = Point3::new(x, y, self.stance.plane_m(ahead_m, 0.0) + half_z);
+        Solid { shape, centre, yaw_rad: self.stance.pose.yaw_rad, material, collides: true }
+    }
+
     /// At rest at `pose`.
     pub(super) fn place(&mut self, layout: &Layout, pose: Pose) {
         self.stance = layout.terrain().put(&layout.scene, &self.shape, pose).stance;
@@ -72,21 +116,24 @@ impl Vehicle {
         self.drive.stop();
     }
 
-    /// One control period.
-    pub(super) fn advance(&mut self, layout: &Layout, traffic: &Traffic, command: Twist) -> Motion {
+    /// One control period of the body with this index.
+    pub(super) fn advance(&mut self, layout: &Layout, traffic: &Traffic, index: usize, command: Twist) -> Motion {
         self.drive.begin();
+        self.struck.clear();
         let mut motion = Motion { fallen: self.fallen, ..Motion::default() };
         if self.fallen {
             return motion;
         }
         let terrain = layout.terrain();
-        motion.contact = self.gather(layout, command);
+        let reach_m = self.drive.reach_m(command) + self.shape.radius_m();
+        motion.contact = self.gather(layout, reach_m);
+        motion.contact |= self.gather_others(traffic, index, reach_m);
         let held = traffic.touches(&self.shape, &self.stance);
         motion.contact |= held;
-        let traffic = Some(traffic).filter(|traffic| !held && !traffic.is_empty());
+        let movers = !held && traffic.has_movers();
         let (shape, flat) = (&self.shape, terrain.is_flat(&self.shape));
-        let obstacles = Obstacles { shape, terrain, blocking: &self.blocking, traffic };
-        if flat && obstacles.blocking.is_empty() && traffic.is_none() {
+        let obstacles = Obstacles { shape, terrain, blocking: &self.blocking, traffic, others: &self.others, movers };
+        if flat && obstacles.is_empty() {
             let mut pose = self.stance.pose;
             motion.odometry = drive_through(&mut self.drive, command, |twist, tick_s| {
                 pose = pose.moved(twist, tick_s);
@@ -95,11 +142,16 @@ impl Vehicle {
             self.stance = self.stance.moved(pose);
             return motion;
         }
-        let (stance, fallen, near) = (&mut self.stance, &mut self.fallen, &self.near);
+        let (stance, fallen, near, struck) = (&mut self.stance, &mut self.fallen, &self.near, &mut self.struck);
         motion.odometry = drive_through(&mut self.drive, command, |twist, tick_s| {
             let mut next = stance.moved(stance.pose.moved(twist, tick_s));
             let mut done = 1.0;
             if obstacles.block(&next) {
+                for other in obstacles.met(&next) {
+                    if !struck.contains(&other) {
+                        struck.push(other);
+                    }
+                }
                 (next, done) = obstacles.last_free(stance, twist, tick_s);
                 motion.contact = true;
             }
@@ -115,19 +167,29 @@ impl Vehicle {
         motion
     }
 
-    /// Collects what can be reached, and tells whether the body overlaps any of it already.
-    fn gather(&mut self, layout: &Layout, command: Twist) -> bool {
+    /// Collects the solids that can be reached, and returns whether the body overlaps any of them already.
+    fn gather(&mut self, layout: &Layout, reach_m: f64) -> bool {
         let (terrain, shape, stance) = (layout.terrain(), &self.shape, &self.stance);
         let (near, blocking) = (&mut self.near, &mut self.blocking);
         near.clear();
         blocking.clear();
-        Terrain::visit_near(&layout.scene, stance.pose, self.drive.reach_m(command) + shape.radius_m(), |index| {
+        Terrain::visit_near(&layout.scene, stance.pose, reach_m, |index| {
             near.push(index);
             if !terrain.obstacle(index).touches(shape, stance) {
                 blocking.push(index);
             }
         });
         blocking.len() < near.len()
+    }
+
+    /// Collects the other bodies that can be reached, and returns whether the body overlaps any of them already.
+    fn gather_others(&mut self, traffic: &Traffic, index: usize, reach_m: f64) -> bool {
+        self.others.clear();
+        for (other, obstacle) in traffic.others(index, self.stance.pose, reach_m) {
+            let list = if obstacle.touches(&self.shape, &self.stance) { &mut self.struck } else { &mut self.others };
+            list.push(other);
+        }
+        !self.struck.is_empty()
     }
 }
 

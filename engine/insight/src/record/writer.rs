@@ -133,7 +133,7 @@ impl Tape {
     fn robot(&self, playback: &Playback<'_>) {
         let (at, timestamp) = self.now();
         let world = playback.cycle().robot().world();
-        let body = world.body();
+        let body = world.body(0);
         let message = FrameTransform {
             timestamp: Some(timestamp),
             parent_frame_id: WORLD.to_owned(),

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::atomic::write_atomic;
-use engine::diagnostic::{Diagnostic, Kind, Result};
+use engine::diagnostic::{Diagnostic, Result};
 
 /// One picture in two forms.
 #[derive(Debug, Clone, PartialEq, Eq)]

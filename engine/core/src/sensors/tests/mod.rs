@@ -1,5 +1,6 @@
 //! Both sensors against exact rays and hand-computed values.
 
+mod bodies;
 mod camera;
 mod laser;
 mod oracle;

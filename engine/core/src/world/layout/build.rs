@@ -14,8 +14,8 @@ use std::sync::Arc;
 
 /// Thickness of paint on the floor, metres.
 const PAINT_M: f64 = 0.001;
-/// The material of everything that names none.
-const PLAIN: &str = "plain";
+/// The material of everything that names none; every layout has it.
+pub(in crate::world) const PLAIN: &str = "plain";
 
 /// A world as its file says it, and where the file says it.
 pub(super) struct Built {

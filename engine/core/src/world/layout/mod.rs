@@ -18,6 +18,8 @@ use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
+pub(super) use build::PLAIN;
+
 /// Longest world file, bytes.
 const MOST_BYTES: u64 = 1 << 20;
 

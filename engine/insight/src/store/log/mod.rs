@@ -25,7 +25,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
 use engine::diagnostic::{Diagnostic, Result};
-use engine::digest::{Digest, hex};
+use engine::digest::hex;
 use engine::experiment::{Ledger, Plan, RunLog};
 
 pub(super) use read::log_names;

@@ -1,6 +1,6 @@
 //! A log file read back: nothing in it is believed before it is checked.
 
-use super::{FORMAT, FORMAT_OF_LEGS, Header, MAGIC, PREFIX_BYTES, PhaseEntry, RuleEntry, damaged, hex};
+use super::{FORMAT, FORMAT_OF_LEGS, Header, MAGIC, PREFIX_BYTES, PhaseEntry, RuleEntry, damaged};
 use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::digest::Digest;
 use engine::experiment::{

@@ -82,7 +82,7 @@ impl Stages {
         judge.calibrate()?;
         let mut cycle = Cycle::new(plan, SimulatedRobot::new(layout, settings, 1)?)?;
         Ok(Self {
-            world: World::new(Arc::clone(layout), &settings.robot, settings.run.period_s, 1),
+            world: World::new(Arc::clone(layout), &[settings.robot], settings.run.period_s, 1),
             camera: Camera::new(&layout.scene, &settings.camera, 1),
             laser: Laser::new(&layout.scene, &settings.laser, 1),
             image: samples[0].image.clone(),
@@ -111,18 +111,18 @@ impl Stages {
 
     fn physics(&mut self, index: usize) {
         if index.is_multiple_of(8) {
-            self.world.place(self.samples[index].pose);
+            self.world.place(0, self.samples[index].pose);
         }
         let actions = &self.plan.settings.actions;
-        black_box(self.world.advance(actions[index % actions.len()]));
+        black_box(self.world.advance(&[actions[index % actions.len()]]));
     }
 
     fn camera(&mut self, index: usize) {
-        self.camera.render(&self.samples[index].body, self.world.moving(), black_box(&mut self.image));
+        self.camera.render(&self.samples[index].body, self.world.seen_by(0), black_box(&mut self.image));
     }
 
     fn laser(&mut self, index: usize) {
-        self.laser.scan(&self.samples[index].body, self.world.moving(), black_box(&mut self.scan));
+        self.laser.scan(&self.samples[index].body, self.world.seen_by(0), black_box(&mut self.scan));
     }
 
     fn filter(&mut self, index: usize) {
@@ -167,7 +167,7 @@ fn record(plan: &Plan) -> Result<Vec<Sample>> {
     for index in 0..SAMPLES * SPACING {
         let step = cycle.step(random.below(plan.settings.actions.len() as u32) as usize)?;
         if index % SPACING == 0 {
-            let body = cycle.robot().world().body();
+            let body = cycle.robot().world().body(0);
             samples.push(Sample {
                 pose: body.pose,
                 body: body.world_from_robot(),
