@@ -172,12 +172,12 @@ impl<R: Robot> Cycle<R> {
         facts.coverage = f64::from(grid.counts().iter().sum::<u32>()) / pixels as f64;
         facts.state = self.states[0];
         facts.action = action;
-        facts.action_linear = twist.linear_m_per_s;
-        facts.action_angular = twist.angular_rad_per_s;
+        facts.action_linear_m_per_s = twist.linear_m_per_s;
+        facts.action_angular_rad_per_s = twist.angular_rad_per_s;
         facts.contact = self.observation.contact;
         facts.fallen = self.observation.fallen;
-        facts.linear = self.observation.odometry.linear_m_per_s;
-        facts.angular = self.observation.odometry.angular_rad_per_s;
+        facts.linear_m_per_s = self.observation.odometry.linear_m_per_s;
+        facts.angular_rad_per_s = self.observation.odometry.angular_rad_per_s;
         facts.step = step;
         facts.since_recovery = self.since_recovery;
     }

@@ -1,6 +1,6 @@
 //! Places in a script, and what is wrong there in plain words: unknown names, limits, kinds of values.
 
-use super::fact_table::{GROUPS, OTHER_NAMES, names_in};
+use super::fact_table::{GROUPS, OTHER_NAMES, is_group, names_in};
 use crate::diagnostic::{Diagnostic, SourceText, nearest_name, printable};
 use rhai::Position;
 
@@ -81,7 +81,7 @@ pub(crate) fn plain_kind(kind: &str) -> String {
         "map" | "Map" => "a map".to_owned(),
         kind if kind.to_lowercase().contains("str") => "a text".to_owned(),
         kind if kind.starts_with("range") => "a range".to_owned(),
-        kind if kind == "sector" || kind == "facts" || GROUPS.iter().any(|(group, _)| *group == kind) => {
+        kind if kind == "sector" || kind == "facts" || is_group(kind) => {
             format!("'{kind}' as a whole")
         }
         kind if kind.starts_with("Fn") => "a function".to_owned(),

@@ -1,5 +1,7 @@
 //! Conditions and values as small native trees: what a rule costs is what they cost.
 
+use super::fact_columns::Getter;
+use super::fact_table::{Fact, FactId};
 use super::facts::{self, Facts};
 
 /// A part of what `fn calibrate` returned, as rules read it.
@@ -48,8 +50,8 @@ pub enum Comparison {
 #[derive(Debug, Clone)]
 pub(crate) enum Number {
     Constant(f64),
-    Fact(fn(&Facts) -> f64, super::fact_table::Reach),
-    Whole(fn(&Facts) -> i64),
+    Fact(fn(&Facts) -> f64, FactId),
+    Whole(fn(&Facts) -> i64, FactId),
     Beam(usize),
     Cell(usize, usize),
     Sector(usize, usize, fn(&[f32]) -> f64),
@@ -82,6 +84,18 @@ pub(crate) enum Typed {
     Flag(Flag),
 }
 
+impl Typed {
+    /// A fact that is read without arguments; nothing for others.
+    pub(crate) const fn of_fact(fact: &Fact) -> Option<Self> {
+        match fact.get {
+            Getter::Number(get) => Some(Self::Number(Number::Fact(get, fact.id))),
+            Getter::Whole(get) => Some(Self::Whole(Number::Whole(get, fact.id))),
+            Getter::Flag(get) => Some(Self::Flag(Flag::Fact(get))),
+            Getter::Sector(_) | Getter::Call(..) => None,
+        }
+    }
+}
+
 impl Number {
     // Most rules compare a fact with a constant: these two are worth a way of their own, without a call.
     #[inline]
@@ -96,7 +110,7 @@ impl Number {
     fn branch(&self, inputs: Inputs<'_>) -> f64 {
         match self {
             Self::Constant(_) | Self::Fact(..) => self.value(inputs),
-            Self::Whole(get) => get(inputs.facts) as f64,
+            Self::Whole(get, _) => get(inputs.facts) as f64,
             Self::Beam(beam) => inputs.facts.beam_m(*beam),
             Self::Cell(row, column) => inputs.facts.cell(*row, *column),
             Self::Sector(from, to, get) => get(inputs.facts.sector_m(*from, *to)),

@@ -18,17 +18,17 @@ pub struct Facts {
     /// Index of the action that was carried out.
     pub action: usize,
     /// Commanded forward speed, m/s.
-    pub action_linear: f64,
+    pub action_linear_m_per_s: f64,
     /// Commanded turning speed, rad/s, anticlockwise positive.
-    pub action_angular: f64,
+    pub action_angular_rad_per_s: f64,
     /// Whether the body touched something.
     pub contact: bool,
     /// Whether the robot fell off an edge.
     pub fallen: bool,
     /// Measured forward speed, m/s.
-    pub linear: f64,
+    pub linear_m_per_s: f64,
     /// Measured turning speed, rad/s.
-    pub angular: f64,
+    pub angular_rad_per_s: f64,
     /// Steps since learning or the test began.
     pub step: u64,
     /// Steps since the last recovery or the start.

@@ -7,6 +7,7 @@
 pub(crate) mod evaluate;
 pub(crate) mod explain;
 pub(crate) mod expression;
+pub(crate) mod fact_columns;
 pub(crate) mod fact_table;
 pub(crate) mod facts;
 pub(crate) mod functions;
@@ -22,6 +23,8 @@ pub(crate) mod views;
 
 pub use evaluate::Judgement;
 pub use expression::Comparison;
+pub use fact_columns::{Reach, Unit};
+pub use fact_table::{Fact, FactId};
 pub use facts::Facts;
 pub use judging::Judge;
 pub use readings::{Evidence, FactRead};

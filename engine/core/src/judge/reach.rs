@@ -1,7 +1,8 @@
 //! Whether a rule can fire at all: intervals through its condition.
 
 use super::expression::{Arithmetic, Comparison, Flag, Number};
-use super::fact_table::Reach;
+use super::fact_columns::Reach;
+use super::fact_table::FactId;
 use super::facts::{Facts, decimal};
 use super::rule::{Clause, Rule};
 use crate::diagnostic::{Diagnostic, Result, SourceText};
@@ -106,12 +107,15 @@ fn words((low, high): Interval) -> String {
 fn interval(number: &Number, limits: &Limits) -> Interval {
     match number {
         Number::Constant(value) => (*value, *value),
-        Number::Fact(of, Reach::Laser) => (of(&limits.low), of(&limits.high)),
-        Number::Fact(_, reach) => reach.bounds(),
-        Number::Whole(_) | Number::CountBelow(..) => (0.0, f64::INFINITY),
+        Number::Fact(of, fact) => match fact.fact().reach {
+            Reach::Laser => (of(&limits.low), of(&limits.high)),
+            reach => reach.bounds(),
+        },
+        Number::Whole(_, fact) => fact.fact().reach.bounds(),
+        Number::CountBelow(..) => FactId::SectorCountBelow.fact().reach.bounds(),
         Number::Beam(beam) => limits.of_beams(*beam, *beam, |ranges_m| decimal(ranges_m[0])),
         Number::Sector(from, to, of) => limits.of_beams(*from, *to, of),
-        Number::Cell(..) => (0.0, 1.0),
+        Number::Cell(..) => FactId::CameraCell.fact().reach.bounds(),
         Number::Negate(of) => {
             let (low, high) = interval(of, limits);
             (-high, -low)

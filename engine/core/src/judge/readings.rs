@@ -1,7 +1,8 @@
 //! What a condition reads, part by part: so that a reward can name the fact and the beam behind it.
 
-use super::expression::{Flag, Inputs, Number, Slot, Typed};
-use super::fact_table::{Fact, Getter};
+use super::expression::{Flag, Inputs, Slot, Typed};
+use super::fact_columns::Beam;
+use super::fact_table::{Fact, FactId};
 use super::facts::{decimal, greatest, least};
 use std::ops::Range;
 
@@ -21,6 +22,8 @@ pub struct Evidence {
 pub struct FactRead {
     /// As it stands in the script: `laser.sector(50, 130).nearest`.
     pub name: String,
+    /// Which fact it is; nothing for what was calibrated.
+    pub id: Option<FactId>,
     /// Its value; flags are 0 or 1.
     pub value: f64,
     /// The unit, in words; empty for flags.
@@ -42,7 +45,8 @@ pub(crate) struct Part {
 pub(crate) struct Reading {
     pub name: String,
     pub typed: Typed,
-    pub unit: &'static str,
+    /// Nothing for what was calibrated.
+    pub id: Option<FactId>,
     pub look: Look,
 }
 
@@ -60,18 +64,6 @@ pub(crate) enum Look {
 
 /// From the first beam to the last.
 pub(crate) const ALL: (usize, usize) = (0, usize::MAX);
-
-/// Which beam to name with a fact.
-pub(crate) fn look_of_fact(fact: &Fact) -> Look {
-    match (fact.group, fact.key) {
-        ("laser", "nearest" | "nearest_beam") => Look::Least(ALL.0, ALL.1),
-        ("laser", "farthest") => Look::Greatest(ALL.0, ALL.1),
-        ("laser", "right") => Look::One(0),
-        ("laser", "front") => Look::Middle,
-        ("laser", "left") => Look::Last,
-        _ => Look::Nowhere,
-    }
-}
 
 impl Part {
     /// What it read.
@@ -92,14 +84,10 @@ pub(crate) fn beam(parts: &[Part], inputs: Inputs<'_>) -> Option<usize> {
 }
 
 impl Reading {
-    /// A fact by its whole name.
-    pub(crate) fn of_fact(fact: &Fact) -> Self {
-        let typed = match fact.get {
-            Getter::Number(get) => Typed::Number(Number::Fact(get, fact.reach)),
-            Getter::Whole(get) => Typed::Whole(Number::Whole(get)),
-            Getter::Flag(get) => Typed::Flag(Flag::Fact(get)),
-        };
-        Self { name: fact.name(), typed, unit: fact.unit, look: look_of_fact(fact) }
+    /// A fact that is read without arguments, by its whole name; nothing for others.
+    pub(crate) fn of_fact(fact: &Fact) -> Option<Self> {
+        let typed = Typed::of_fact(fact)?;
+        Some(Self { name: fact.name(), typed, id: Some(fact.id), look: Look::of(fact.beam, ALL) })
     }
 
     fn read(&self, inputs: Inputs<'_>) -> Option<FactRead> {
@@ -108,12 +96,25 @@ impl Reading {
             Typed::Flag(flag) => f64::from(u8::from(flag.holds(inputs))),
         };
         // An array that was calibrated is no number.
-        let read = FactRead { name: self.name.clone(), value, unit: self.unit, beam: self.look.beam(inputs) };
+        let unit = self.id.map_or("number", |id| id.fact().unit.words());
+        let read = FactRead { name: self.name.clone(), id: self.id, value, unit, beam: self.look.beam(inputs) };
         (!value.is_nan()).then_some(read)
     }
 }
 
 impl Look {
+    /// For a fact of the beams `from` to `to`; what an expression gives too (a beam, expected ranges) is not known here.
+    pub(crate) const fn of(beam: Beam, (from, to): (usize, usize)) -> Self {
+        match beam {
+            Beam::Without | Beam::Given | Beam::Worst => Self::Nowhere,
+            Beam::Right => Self::One(0),
+            Beam::Front => Self::Middle,
+            Beam::Left => Self::Last,
+            Beam::Nearest => Self::Least(from, to),
+            Beam::Farthest => Self::Greatest(from, to),
+        }
+    }
+
     fn beam(self, inputs: Inputs<'_>) -> Option<usize> {
         let ranges_m = &inputs.facts.ranges_m;
         let last = ranges_m.len().checked_sub(1)?;

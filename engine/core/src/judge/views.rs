@@ -1,6 +1,7 @@
 //! How a script sees the facts: `facts`, its groups and sectors, each a handle on the measurements of one step.
 
-use super::fact_table::{FACTS, Getter, SECTOR};
+use super::fact_columns::Getter;
+use super::fact_table::FACTS;
 use super::facts::{self, Facts};
 use rhai::{Dynamic, Engine, EvalAltResult, Position, Variant};
 use std::sync::Arc;
@@ -115,6 +116,7 @@ fn register_group<T: View>(engine: &mut Engine) {
             Getter::Number(get) => engine.register_get(fact.key, move |view: &mut T| get(view.facts())),
             Getter::Whole(get) => engine.register_get(fact.key, move |view: &mut T| get(view.facts())),
             Getter::Flag(get) => engine.register_get(fact.key, move |view: &mut T| get(view.facts())),
+            Getter::Sector(_) | Getter::Call(..) => continue,
         };
     }
 }
@@ -137,9 +139,10 @@ fn register_laser(engine: &mut Engine) {
 
 fn register_sector(engine: &mut Engine) {
     engine.register_type_with_name::<Sector>("sector");
-    for fact in SECTOR {
-        let get = fact.get;
-        engine.register_get(fact.key, move |sector: &mut Sector| get(sector.ranges()));
+    for fact in FACTS {
+        if let Getter::Sector(get) = fact.get {
+            engine.register_get(fact.key, move |sector: &mut Sector| get(sector.ranges()));
+        }
     }
     engine.register_fn("count_below", |sector: &mut Sector, limit_m: f64| below(sector, limit_m));
     engine.register_fn("count_below", |sector: &mut Sector, limit_m: i64| below(sector, limit_m as f64));
@@ -190,5 +193,16 @@ fn compare<T: Variant + Clone>(engine: &mut Engine, range_m: fn(&T) -> f64) {
         engine.register_fn(operator, move |a: T, b: i64| holds(range_m(&a), b as f64));
         engine.register_fn(operator, move |a: f64, b: T| holds(a, range_m(&b)));
         engine.register_fn(operator, move |a: i64, b: T| holds(a as f64, range_m(&b)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fact_table::GROUPS;
+    use super::*;
+
+    #[test]
+    fn every_group_of_facts_can_be_seen() {
+        assert!(GROUPS.iter().all(|(group, _)| !view(group, &Arc::default()).is_unit()));
     }
 }

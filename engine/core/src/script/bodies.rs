@@ -6,7 +6,7 @@ use super::positions::body_end;
 use super::reader::{Local, Reader};
 use super::source::Code;
 use super::syntax::written_rules;
-use crate::judge::fact_table::GROUPS;
+use crate::judge::fact_table::is_group;
 use crate::judge::rule::Rule;
 use rhai::{AST, ASTNode, Expr, Scope, Stmt};
 use std::collections::{BTreeMap, BTreeSet};
@@ -142,7 +142,6 @@ fn group(expr: &Expr) -> Option<String> {
         return None;
     }
     let chain = Chain::of(expr)?;
-    let is_group = |name: &str| GROUPS.iter().any(|(group, _)| *group == name);
     match chain.links.first() {
         _ if is_group(chain.root) => Some(chain.root.to_owned()),
         Some(Link::Property(group, _)) if is_group(group) => Some((*group).to_owned()),

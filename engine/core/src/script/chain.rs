@@ -1,5 +1,6 @@
 //! `facts.laser.sector(50, 130).nearest` taken apart: a root and what follows it.
 
+use crate::judge::fact_table::{Fact, FactId, call, value};
 use rhai::{ASTFlags, Expr, FnCallExpr, Position};
 
 /// One thing after the root.
@@ -55,12 +56,29 @@ impl<'a> Chain<'a> {
         if self.root == "facts" { self.group_of_facts() } else { Some((self.root, &self.links)) }
     }
 
-    /// The same when the root, whatever its name, is all the facts.
+    /// The group of facts that it reads if its root, whatever the name, is all the facts.
     pub(super) fn group_of_facts(&self) -> Option<(&'a str, &[Link<'a>])> {
         match self.links.split_first() {
             Some((Link::Property(group, _), rest)) => Some((group, rest)),
             _ => None,
         }
+    }
+}
+
+/// The fact that a group and what follows it name. The laser and a sector of it stand for their nearest range.
+pub(super) fn fact_of(group: &str, links: &[Link<'_>]) -> Option<&'static Fact> {
+    match (group, links) {
+        ("laser", []) => Some(FactId::LaserNearest.fact()),
+        ("laser", [Link::Index(_)]) => Some(FactId::LaserBeam.fact()),
+        ("laser", [Link::Call(sector, _), rest @ ..]) if sector.name == "sector" => match rest {
+            [] => Some(FactId::SectorNearest.fact()),
+            [Link::Property(key, _)] => value("sector", key),
+            [Link::Call(of_sector, _)] => call("sector", &of_sector.name),
+            _ => None,
+        },
+        (_, [Link::Property(key, _)]) => value(group, key),
+        (_, [Link::Call(of_group, _)]) => call(group, &of_group.name),
+        _ => None,
     }
 }
 

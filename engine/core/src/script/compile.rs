@@ -1,9 +1,9 @@
 //! From the script's tree to a native one; what is not understood stays with the interpreter.
 
 use super::chain::{Chain, Link};
-use crate::judge::Facts;
 use crate::judge::expression::{Arithmetic, Comparison, Flag, Number, Typed};
-use crate::judge::fact_table::{self, Getter, Reach, SECTOR};
+use crate::judge::fact_columns::Getter;
+use crate::judge::fact_table::{FactId, value};
 use crate::judge::functions::{OF_ONE, OF_ONE_FRACTION, OF_TWO, OF_TWO_FRACTION, OneArgument, TwoArguments};
 use crate::judge::needs::{Needs, SlotUse};
 use rhai::{Expr, FnCallExpr, Position, Scope};
@@ -57,10 +57,7 @@ impl Compiler<'_> {
     }
 
     fn number(&mut self, expr: &Expr) -> Option<Number> {
-        match self.expression(expr)? {
-            Typed::Number(number) | Typed::Whole(number) => Some(number),
-            Typed::Flag(_) => None,
-        }
+        number(self.expression(expr)?)
     }
 
     fn variable(&mut self, expr: &Expr) -> Option<Typed> {
@@ -105,11 +102,7 @@ impl Compiler<'_> {
         }
         let (group, links) = chain.group()?;
         match (group, links) {
-            (_, [Link::Property(key, _)]) => Some(match fact_table::find(group, key)? {
-                fact_table::Fact { get: Getter::Number(get), reach, .. } => Typed::Number(Number::Fact(*get, *reach)),
-                fact_table::Fact { get: Getter::Whole(get), .. } => Typed::Whole(Number::Whole(*get)),
-                fact_table::Fact { get: Getter::Flag(get), .. } => Typed::Flag(Flag::Fact(*get)),
-            }),
+            (_, [Link::Property(key, _)]) => Typed::of_fact(value(group, key)?),
             ("laser", [Link::Index(beam)]) => Some(Typed::Number(Number::Beam(self.beam(beam)?))),
             ("camera", [Link::Call(call, _)]) if call.name == "cell" && call.args.len() == 2 => {
                 let (row, column) = (self.constant_whole(&call.args[0])?, self.constant_whole(&call.args[1])?);
@@ -134,10 +127,10 @@ impl Compiler<'_> {
 
     fn sector_fact(&mut self, from: usize, to: usize, link: Link<'_>) -> Option<Typed> {
         match link {
-            Link::Property(key, _) => {
-                let fact = SECTOR.iter().find(|fact| fact.key == key)?;
-                Some(Typed::Number(Number::Sector(from, to, fact.get)))
-            }
+            Link::Property(key, _) => match value("sector", key)?.get {
+                Getter::Sector(get) => Some(Typed::Number(Number::Sector(from, to, get))),
+                _ => None,
+            },
             Link::Call(call, _) if call.args.len() == 1 => match call.name.as_str() {
                 "count_below" => {
                     let limit = self.number(&call.args[0])?;
@@ -249,20 +242,23 @@ impl Compiler<'_> {
     pub(super) fn range(&mut self, expr: &Expr) -> Option<Number> {
         let chain = Chain::of(expr);
         match chain.as_ref().and_then(Chain::group) {
-            Some(("laser", [])) => Some(Number::Fact(laser_nearest()?, Reach::Laser)),
+            Some(("laser", [])) => number(Typed::of_fact(FactId::LaserNearest.fact())?),
             Some(("laser", [Link::Call(call, _)])) => {
                 let (from, to) = self.sector(call)?;
-                Some(Number::Sector(from, to, SECTOR.iter().find(|fact| fact.key == "nearest")?.get))
+                match FactId::SectorNearest.fact().get {
+                    Getter::Sector(get) => Some(Number::Sector(from, to, get)),
+                    _ => None,
+                }
             }
             _ => self.number(expr),
         }
     }
 }
 
-fn laser_nearest() -> Option<fn(&Facts) -> f64> {
-    match fact_table::find("laser", "nearest")?.get {
-        Getter::Number(get) => Some(get),
-        _ => None,
+fn number(typed: Typed) -> Option<Number> {
+    match typed {
+        Typed::Number(number) | Typed::Whole(number) => Some(number),
+        Typed::Flag(_) => None,
     }
 }
 

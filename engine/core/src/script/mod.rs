@@ -30,7 +30,7 @@ mod unread;
 
 pub use behaviour::Behaviour;
 pub use draft::Draft;
-pub use outline::{BeamLoop, Compared, Condition, Gathers, Outline, RuleOutline, UnusedName};
+pub use outline::{BeamLoop, Compared, Condition, Gathers, NamedFact, Outline, RuleOutline, UnusedName};
 pub use reference::{definitions, reference};
 pub use unread::Unread;
 

@@ -8,7 +8,7 @@ use super::tree::Tree;
 use super::unknown::Unknown;
 use crate::diagnostic::{Diagnostic, Mistakes};
 use crate::judge::explain;
-use crate::judge::fact_table::{self, CALLS, GROUPS, SECTOR, names_in};
+use crate::judge::fact_table::{self, Fact, GROUPS, is_group, names_in, takes_arguments, value};
 use crate::judge::functions::FUNCTIONS;
 use crate::judge::needs::Needs;
 use rhai::{AST, ASTNode, Expr, FnCallExpr, Position, Stmt};
@@ -126,7 +126,7 @@ impl Names<'_> {
     }
 
     fn defined(&mut self, name: &str, position: Position) {
-        if GROUPS.iter().any(|(group, _)| *group == name) || matches!(name, "facts" | "calibrated") {
+        if is_group(name) || matches!(name, "facts" | "calibrated") {
             let message = format!("'{name}' is the name of facts");
             self.mistake("E-SCRIPT-NAME", position, message, "defined here", "choose another name");
         }
@@ -134,7 +134,7 @@ impl Names<'_> {
 
     fn variable(&mut self, expr: &Expr, in_rule: bool) {
         let Some(Chain { root, is_local: false, position, .. }) = Chain::of(expr) else { return };
-        let is_group = GROUPS.iter().any(|(group, _)| *group == root);
+        let is_group = is_group(root);
         if !is_group && !matches!(root, "facts" | "calibrated") {
             let defined = self.variables.as_ref().is_none_or(|known| known.contains(root)) || self.spoilt.has(root);
             if !defined && !self.own.iter().any(|(name, _)| name == root) {
@@ -174,7 +174,7 @@ impl Names<'_> {
         }
         let own: Vec<usize> = self.own.iter().filter(|row| row.0 == name).map(|row| row.1).collect();
         let wanted = FUNCTIONS.iter().find(|row| row.name == name);
-        let of_facts = CALLS.iter().any(|row| row.key == name) && receiver == 1;
+        let of_facts = takes_arguments(name) && receiver == 1;
         if of_facts || own.contains(&found) {
             return;
         }
@@ -208,7 +208,7 @@ impl Names<'_> {
         let Some(chain) = Chain::of(expr) else { return false };
         let all = self.facts_names.iter().any(|name| name == chain.root);
         let group = if all { chain.group_of_facts() } else { chain.group() };
-        group.is_some_and(|(group, _)| GROUPS.iter().any(|row| row.0 == group))
+        group.is_some_and(|(group, _)| is_group(group))
     }
 
     /// `1 / 2` is 0 between whole numbers: nobody means that.
@@ -229,7 +229,7 @@ impl Names<'_> {
             (_, true) => {
                 if let Some(Link::Property(group, position)) = chain.links.first().copied()
                     && group != "calibrated"
-                    && !GROUPS.iter().any(|row| row.0 == group)
+                    && !is_group(group)
                 {
                     return self.no_group(group, position);
                 }
@@ -239,7 +239,7 @@ impl Names<'_> {
             _ => None,
         };
         if let Some((group, links)) = group
-            && GROUPS.iter().any(|row| row.0 == group)
+            && is_group(group)
         {
             self.group(group, links);
         }
@@ -265,16 +265,14 @@ impl Names<'_> {
                     self.sector(next);
                 }
             }
-            [Link::Property(key, position), ..] if fact_table::find(group, key).is_none() => {
-                self.no_fact(group, key, *position)
-            }
+            [Link::Property(key, position), ..] if value(group, key).is_none() => self.no_fact(group, key, *position),
             _ => {}
         }
     }
 
     fn sector(&mut self, link: &Link<'_>) {
         match link {
-            Link::Property(key, position) if !SECTOR.iter().any(|fact| fact.key == *key) => {
+            Link::Property(key, position) if value("sector", key).is_none() => {
                 self.no_fact("sector", key, *position);
             }
             Link::Call(call, position) => self.call_of_facts("sector", call, *position),
@@ -283,10 +281,10 @@ impl Names<'_> {
     }
 
     fn no_fact(&mut self, group: &str, key: &str, position: Position) {
-        match CALLS.iter().find(|row| row.group == group && row.key == key) {
-            Some(row) => {
+        match fact_table::call(group, key).and_then(Fact::form) {
+            Some((form, _)) => {
                 let message = format!("'{key}' needs arguments");
-                self.mistake("E-SCRIPT-FACT", position, message, "here", format!("write {}", row.form));
+                self.mistake("E-SCRIPT-FACT", position, message, "here", format!("write {form}"));
             }
             None => self.unknown_fact(group, key, position),
         }
@@ -301,15 +299,15 @@ impl Names<'_> {
 
     fn call_of_facts(&mut self, group: &str, call: &FnCallExpr, position: Position) {
         let name = call.name.as_str();
-        match CALLS.iter().find(|row| row.group == group && row.key == name) {
-            None if fact_table::find(group, name).is_some() => {
+        match fact_table::call(group, name).and_then(Fact::form) {
+            None if value(group, name).is_some() => {
                 let message = format!("'{group}.{name}' is a value, not a function");
                 self.mistake("E-SCRIPT-FACT", position, message, "here", format!("write {group}.{name}"));
             }
             None => self.unknown_fact(group, name, position),
-            Some(row) if row.arguments != call.args.len() => {
-                let message = format!("'{name}' takes {} arguments, found {}", row.arguments, call.args.len());
-                self.mistake("E-SCRIPT-FACT", position, message, "here", format!("write {}", row.form));
+            Some((form, arguments)) if arguments != call.args.len() => {
+                let message = format!("'{name}' takes {arguments} arguments, found {}", call.args.len());
+                self.mistake("E-SCRIPT-FACT", position, message, "here", format!("write {form}"));
             }
             Some(_) if name == "sector" => call.args.iter().for_each(|beam| self.beam(beam)),
             Some(_) if name == "cell" => {

@@ -1,13 +1,22 @@
 //! What a script says, told apart for whoever looks for mistakes in it: comparisons, conditions, loops, names.
 
-use crate::judge::expression::Comparison;
+use crate::judge::{Comparison, FactId};
 use std::ops::Range;
+
+/// A fact as a script names it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NamedFact {
+    /// Which fact it is.
+    pub id: FactId,
+    /// Its path, without spaces and without `facts.`: `laser.sector(50,130).nearest`.
+    pub path: String,
+}
 
 /// A fact against a fixed number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Compared {
-    /// The fact as its path, without spaces and without `facts.`: `laser.sector(50,130).nearest`.
-    pub fact: String,
+    /// The fact.
+    pub fact: NamedFact,
     /// Whether its absolute value is compared.
     pub absolute: bool,
     /// How; the fact stands on the left.
@@ -24,7 +33,7 @@ pub enum Condition {
     /// A fact against a number.
     Compare(Compared),
     /// A fact that is true or false, and whether it is denied.
-    Flag(String, bool),
+    Flag(NamedFact, bool),
     /// All of these.
     All(Vec<Condition>),
     /// Any of these.

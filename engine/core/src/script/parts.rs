@@ -1,13 +1,14 @@
 //! What a condition reads, found part by part in the script's tree.
 
-use super::chain::{Chain, Link};
+use super::chain::{Chain, Link, fact_of};
 use super::compile::Compiler;
 use super::positions::{body_end, chain_end, first, part_end};
 use super::source::Code;
 use crate::judge::explain::offset;
 use crate::judge::expression::Typed;
-use crate::judge::fact_table::{self, FACTS, Fact};
-use crate::judge::readings::{ALL, Look, Part, Reading, look_of_fact};
+use crate::judge::fact_columns::Beam;
+use crate::judge::fact_table::{FACTS, Fact, FactId};
+use crate::judge::readings::{ALL, Look, Part, Reading};
 use rhai::{AST, ASTNode, Expr};
 use std::ops::Range;
 
@@ -48,7 +49,7 @@ pub(super) fn function_parts(code: &Code, ast: &AST, name: &Range<usize>, compil
     };
     for fact in FACTS.iter().filter(is_named) {
         if !readings.iter().any(|known| known.name == fact.name()) {
-            readings.push(Reading::of_fact(fact));
+            readings.extend(Reading::of_fact(fact));
         }
     }
     vec![Part { span: name.clone(), flag: None, readings }]
@@ -86,33 +87,31 @@ fn collect(code: &Code, expr: &Expr, compiler: &mut Compiler<'_>, found: &mut Ve
         return;
     }
     let typed = compiler.range(expr).map(Typed::Number).or_else(|| compiler.expression(expr));
-    if let (Some(typed), Some((unit, look))) = (typed, describe(&chain, compiler)) {
+    if let (Some(typed), Some((id, look))) = (typed, describe(&chain, compiler)) {
         let name = code.source.text[start..chain_end(code, start)].trim_start_matches("facts.").to_owned();
-        found.push((start, Reading { name, typed, unit, look }));
+        found.push((start, Reading { name, typed, id, look }));
     }
 }
 
-/// The unit of a fact, and which beam to name with it.
-fn describe(chain: &Chain<'_>, compiler: &mut Compiler<'_>) -> Option<(&'static str, Look)> {
-    match chain.group()? {
-        ("calibrated", _) => Some(("number", Look::Nowhere)),
-        ("laser", []) => Some(("metres", Look::Least(ALL.0, ALL.1))),
-        ("laser", [Link::Index(beam)]) => Some(("metres", Look::One(compiler.beam(beam)?))),
-        ("laser", [Link::Call(call, _), rest @ ..]) => {
-            let (from, to) = compiler.sector(call)?;
-            Some(match rest {
-                [] | [Link::Property("nearest", _)] => ("metres", Look::Least(from, to)),
-                [Link::Property("farthest", _)] => ("metres", Look::Greatest(from, to)),
-                [Link::Call(call, _)] if call.name == "count_below" => ("beams", Look::Least(from, to)),
-                [Link::Call(call, _)] if call.name == "excess" => match compiler.expected(from, to, call) {
-                    Some(slot) => ("metres", Look::Worst(from, to, slot)),
-                    None => ("metres", Look::Nowhere),
-                },
-                _ => ("metres", Look::Nowhere),
-            })
-        }
-        ("camera", [Link::Call(..)]) => Some(("share", Look::Nowhere)),
-        (group, [Link::Property(key, _)]) => fact_table::find(group, key).map(|fact| (fact.unit, look_of_fact(fact))),
-        _ => None,
+/// Which fact a chain reads, nothing for what was calibrated; and which beam to name with it.
+fn describe(chain: &Chain<'_>, compiler: &mut Compiler<'_>) -> Option<(Option<FactId>, Look)> {
+    let (group, links) = chain.group()?;
+    if group == "calibrated" {
+        return Some((None, Look::Nowhere));
     }
+    let fact = fact_of(group, links)?;
+    let look = match (fact.beam, links) {
+        (Beam::Given, [Link::Index(beam)]) => Look::One(compiler.beam(beam)?),
+        (beam, [Link::Call(call, _), rest @ ..]) if group == "laser" => {
+            let (from, to) = compiler.sector(call)?;
+            match (beam, rest) {
+                (Beam::Worst, [Link::Call(call, _)]) => {
+                    compiler.expected(from, to, call).map_or(Look::Nowhere, |slot| Look::Worst(from, to, slot))
+                }
+                _ => Look::of(beam, (from, to)),
+            }
+        }
+        (beam, _) => Look::of(beam, ALL),
+    };
+    Some((Some(fact.id), look))
 }

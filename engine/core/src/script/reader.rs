@@ -1,13 +1,13 @@
 //! Expressions of a script read for its outline: conditions, comparisons, numbers, facts.
 
-use super::chain::{Chain, Link};
-use super::outline::{Compared, Condition, RuleOutline};
+use super::chain::{Chain, Link, fact_of};
+use super::outline::{Compared, Condition, NamedFact, RuleOutline};
 use super::positions::{first, line_end};
 use super::source::Code;
 use super::syntax::WrittenRule;
 use crate::judge::explain::offset;
 use crate::judge::expression::{Arithmetic, Comparison};
-use crate::judge::fact_table::GROUPS;
+use crate::judge::fact_table::{FactId, is_group};
 use crate::judge::rule::Rule;
 use rhai::{Expr, Position, Scope};
 
@@ -102,22 +102,16 @@ impl Reader<'_> {
         }
     }
 
-    /// The path of a fact.
-    pub(super) fn fact(&self, expr: &Expr) -> Option<String> {
+    /// A fact with its path.
+    pub(super) fn fact(&self, expr: &Expr) -> Option<NamedFact> {
         let chain = Chain::of(expr)?;
-        let is_group = |name: &str| GROUPS.iter().any(|(group, _)| *group == name);
         let (group, links) = match chain.links.split_first() {
             _ if is_group(chain.root) => (chain.root, chain.links.as_slice()),
             Some((Link::Property(group, _), rest)) if is_group(group) => (*group, rest),
             _ => return None,
         };
+        let fact = fact_of(group, links)?;
         let mut path = group.to_owned();
-        // The laser, or a sector of it, compared with a number means its nearest.
-        let nearest = match links {
-            [] => group == "laser",
-            [Link::Call(call, _)] => call.name == "sector",
-            _ => false,
-        };
         let plain = |expr: &Expr| self.number(expr, &|_| None);
         for link in links {
             match link {
@@ -130,10 +124,14 @@ impl Reader<'_> {
                 }
             }
         }
-        if nearest {
+        // The laser, or a sector of it, compared with a number means its nearest.
+        if matches!(
+            (fact.id, links.last()),
+            (FactId::LaserNearest, None) | (FactId::SectorNearest, Some(Link::Call(..)))
+        ) {
             path.push_str(".nearest");
         }
-        Some(path)
+        Some(NamedFact { id: fact.id, path })
     }
 }
 
@@ -141,5 +139,5 @@ impl Reader<'_> {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Local {
     Number(f64),
-    Fact(String),
+    Fact(NamedFact),
 }

@@ -2,7 +2,8 @@
 
 use super::setup_table::SETUP;
 use super::source;
-use crate::judge::fact_table::{CALLS, FACTS, GROUPS, Reach, SECTOR};
+use crate::judge::Unit;
+use crate::judge::fact_table::{FACTS, Fact, GROUPS};
 use crate::judge::functions::FUNCTIONS;
 use crate::judge::sandbox;
 use crate::settings::{SETTINGS, Settings};
@@ -48,18 +49,17 @@ fn settings() -> String {
 
 fn facts() -> String {
     let groups = GROUPS.iter().map(|(group, about)| {
-        let values = FACTS.iter().filter(|fact| fact.group == *group).map(|fact| {
-            let unit = if fact.unit.is_empty() { fact.kind() } else { fact.unit };
-            vec![format!("`{}`", fact.name()), unit.to_owned(), reach(fact.reach), fact.purpose.to_owned()]
-        });
         let in_group = move |of: &str| of == *group || *group == "laser" && of == "sector";
-        let calls = CALLS
-            .iter()
-            .filter(move |call| in_group(call.group))
-            .map(|call| vec![format!("`{}`", call.form), call.unit.to_owned(), String::new(), call.purpose.to_owned()]);
-        let sector = SECTOR.iter().filter(move |_| in_group("sector")).map(|fact| {
+        let values = values().filter(|fact| fact.group == *group).map(|fact| {
+            let unit = if fact.unit == Unit::Without { fact.kind() } else { fact.unit.words() };
+            vec![format!("`{}`", fact.name()), unit.to_owned(), fact.reach.words(), fact.purpose.to_owned()]
+        });
+        let calls = calls().filter(move |(fact, ..)| in_group(fact.group)).map(|(fact, form, _)| {
+            vec![format!("`{form}`"), fact.unit.words().to_owned(), String::new(), fact.purpose.to_owned()]
+        });
+        let sector = of_sectors().filter(move |_| in_group("sector")).map(|fact| {
             let form = format!("`laser.sector(from, to).{}`", fact.key);
-            vec![form, "metres".to_owned(), reach(Reach::Laser), fact.purpose.to_owned()]
+            vec![form, fact.unit.words().to_owned(), fact.reach.words(), fact.purpose.to_owned()]
         });
         let rows = values.chain(calls).chain(sector);
         format!("### `{group}`\n\n{about}\n\n{}", table(&["fact", "unit", "values", "what it is"], rows))
@@ -67,13 +67,17 @@ fn facts() -> String {
     groups.collect::<Vec<_>>().join("\n\n")
 }
 
-fn reach(reach: Reach) -> String {
-    match reach {
-        Reach::Laser => "`laser.min_range_m` to `laser.max_range_m`".to_owned(),
-        Reach::Between(low, high) => format!("{low} to {high}"),
-        Reach::From(low) => format!("from {low}"),
-        Reach::Any => String::new(),
-    }
+fn values() -> impl Iterator<Item = &'static Fact> {
+    FACTS.iter().filter(|fact| fact.form().is_none() && fact.group != "sector")
+}
+
+fn of_sectors() -> impl Iterator<Item = &'static Fact> {
+    FACTS.iter().filter(|fact| fact.form().is_none() && fact.group == "sector")
+}
+
+/// Facts with arguments: how each is written, and how many it takes.
+fn calls() -> impl Iterator<Item = (&'static Fact, &'static str, usize)> {
+    FACTS.iter().filter_map(|fact| fact.form().map(|(form, arguments)| (fact, form, arguments)))
 }
 
 fn functions() -> String {
@@ -104,13 +108,14 @@ pub fn definitions() -> String {
     let mut out = "module static;\n".to_owned();
     for (group, about) in GROUPS {
         let _ = write!(out, "\n/// {about}\nlet {group}: {};\n", type_of(group));
-        for fact in FACTS.iter().filter(|fact| fact.group == *group) {
+        for fact in values().filter(|fact| fact.group == *group) {
             let kind = match fact.kind() {
                 "number" => "float",
                 "whole number" => "int",
                 _ => "bool",
             };
-            let unit = if fact.unit.is_empty() { String::new() } else { format!(" ({})", fact.unit) };
+            let unit = fact.unit.words();
+            let unit = if unit.is_empty() { String::new() } else { format!(" ({unit})") };
             let _ = write!(
                 out,
                 "/// {}{unit}\nfn get {}({group}: {}) -> {kind};\n",
@@ -120,14 +125,14 @@ pub fn definitions() -> String {
             );
         }
     }
-    for fact in SECTOR {
+    for fact in of_sectors() {
         let _ = write!(out, "\n/// {} (metres)\nfn get {}(sector: Sector) -> float;\n", fact.purpose, fact.key);
     }
-    for call in CALLS {
-        let _ = write!(out, "\n/// {} Written: {}\n", call.purpose, call.form);
+    for (call, form, arguments) in calls() {
+        let _ = write!(out, "\n/// {} Written: {}\n", call.purpose, form);
         let (name, arguments) = match call.key {
             "[" => ("index$get$", "int".to_owned()),
-            key => (key, vec!["_"; call.arguments].join(", ")),
+            key => (key, vec!["_"; arguments].join(", ")),
         };
         let _ = writeln!(out, "fn {name}({}: {}, {arguments});", call.group, type_of(call.group));
     }

@@ -29,7 +29,7 @@ pub(super) fn rehearse(
         facts.coverage = f64::from(u8::from(sees));
         (facts.seen, facts.contact, facts.fallen) = (sees, sees, sees);
         (facts.step, facts.since_recovery) = (1, 1);
-        (facts.action_linear, facts.linear) = (0.2, 0.2);
+        (facts.action_linear_m_per_s, facts.linear_m_per_s) = (0.2, 0.2);
         if !spoilt.has("calibrate") && !certain(judge.calibrate(), mistakes)? {
             spoilt.insert("calibrate");
             spoilt.insert("calibrated");

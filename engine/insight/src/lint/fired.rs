@@ -1,10 +1,11 @@
 //! Rules that never fired in the trial, always fired, were always forestalled, or wait too long.
 
 use super::exploit::Exploits;
-use super::trial::RuleTrial;
+use super::trial::{FactTrial, RuleTrial};
 use super::{Finding, Trial};
 use engine::diagnostic::printable;
 use engine::experiment::Plan;
+use engine::judge::{FactId, Reach};
 
 /// Steps in which a rule must have been asked before anything is said about all of them.
 const ENOUGH: u64 = 200;
@@ -65,17 +66,19 @@ fn never(plan: &Plan, index: usize, seen: &RuleTrial, needed: u64, steps: u64) -
     }
     // Goals are rare before anything is learned, and so are accidents of the body and the end of one's patience.
     let goal = plan.behaviour.fixed_value(index).is_some_and(|value| value > 0.0);
-    let rare = |fact: &(String, &str, f64, f64)| fact.0 == "robot.contact" || fact.0 == "robot.fallen";
-    if goal || seen.facts.iter().all(|fact| fact.0.starts_with("time.")) || seen.facts.iter().any(rare) {
+    let row = |fact: &FactTrial| fact.id.map(FactId::fact);
+    let rare = |fact| row(fact).is_some_and(|row| row.reach == Reach::Accident);
+    let patience = |fact| row(fact).is_some_and(|row| row.group == "time");
+    if goal || seen.facts.iter().all(patience) || seen.facts.iter().any(rare) {
         return None;
     }
     let read: Vec<String> = seen
         .facts
         .iter()
-        .map(|(name, unit, low, high)| match *unit {
-            "" if low == high => format!("{name} was always {}", *low > 0.5),
+        .map(|FactTrial { name, unit, least, greatest, .. }| match *unit {
+            "" if least == greatest => format!("{name} was always {}", *least > 0.5),
             "" => format!("{name} was true and false"),
-            unit => format!("{name} was {low:.2} to {high:.2} {unit}"),
+            unit => format!("{name} was {least:.2} to {greatest:.2} {unit}"),
         })
         .collect();
     let label = if read.is_empty() { "never held".to_owned() } else { read.join("; ") };

@@ -3,7 +3,7 @@
 use super::Finding;
 use engine::diagnostic::printable;
 use engine::experiment::Plan;
-use engine::judge::Comparison;
+use engine::judge::{Comparison, FactId, Reach};
 use engine::script::{Compared, Condition};
 
 pub(super) fn check(plan: &Plan, findings: &mut Vec<Finding>) {
@@ -45,10 +45,9 @@ fn narrower(a: &Compared, b: &Compared) -> bool {
     }
     let same = a.fact == b.fact;
     // No beam is nearer than the nearest, none farther than the farthest.
-    let is_range =
-        |fact: &str| fact.starts_with("laser") && !["beam", "count", "excess"].iter().any(|w| fact.contains(w));
-    let below = same || b.fact == "laser.nearest" && is_range(&a.fact);
-    let above = same || b.fact == "laser.farthest" && is_range(&a.fact);
+    let is_range = a.fact.id.fact().reach == Reach::Laser;
+    let below = same || b.fact.id == FactId::LaserNearest && is_range;
+    let above = same || b.fact.id == FactId::LaserFarthest && is_range;
     match (a.comparison, b.comparison) {
         (Less, Less | LessOrEqual) | (LessOrEqual | Equal, LessOrEqual) => below && a.limit <= b.limit,
         (LessOrEqual | Equal, Less) => below && a.limit < b.limit,
@@ -62,27 +61,36 @@ fn narrower(a: &Compared, b: &Compared) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use engine::script::NamedFact;
 
-    fn compare(fact: &str, comparison: Comparison, limit: f64) -> Condition {
-        Condition::Compare(Compared { fact: fact.to_owned(), absolute: false, comparison, limit, span: 0..0 })
+    fn named(id: FactId) -> NamedFact {
+        NamedFact { id, path: id.fact().name() }
+    }
+
+    fn compare(id: FactId, comparison: Comparison, limit: f64) -> Condition {
+        Condition::Compare(Compared { fact: named(id), absolute: false, comparison, limit, span: 0..0 })
     }
 
     #[test]
     fn a_narrower_threshold_implies_a_wider_one() {
-        let (near, nearer) =
-            (compare("laser.nearest", Comparison::Less, 0.5), compare("laser.nearest", Comparison::LessOrEqual, 0.3));
+        let (near, nearer) = (
+            compare(FactId::LaserNearest, Comparison::Less, 0.5),
+            compare(FactId::LaserNearest, Comparison::LessOrEqual, 0.3),
+        );
         assert!(implies(&nearer, &near) && !implies(&near, &nearer));
     }
 
     #[test]
     fn a_near_beam_implies_a_near_laser() {
-        let (one, all) = (compare("laser[90]", Comparison::Less, 0.3), compare("laser.nearest", Comparison::Less, 0.3));
+        let (one, all) =
+            (compare(FactId::LaserBeam, Comparison::Less, 0.3), compare(FactId::LaserNearest, Comparison::Less, 0.3));
         assert!(implies(&one, &all) && !implies(&all, &one));
     }
 
     #[test]
     fn both_of_two_imply_each_of_them() {
-        let (a, b) = (compare("laser.left", Comparison::Less, 1.0), Condition::Flag("camera.seen".to_owned(), false));
+        let (a, b) =
+            (compare(FactId::LaserLeft, Comparison::Less, 1.0), Condition::Flag(named(FactId::CameraSeen), false));
         let both = Condition::All(vec![a.clone(), b.clone()]);
         let either = Condition::Any(vec![a.clone(), b.clone()]);
         assert!(implies(&both, &a) && implies(&both, &either) && implies(&a, &either));

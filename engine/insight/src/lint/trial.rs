@@ -4,6 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use engine::diagnostic::Result;
 use engine::experiment::{ByState, Cycle, Each, Ledger, Plan, Step, TestRun, in_parallel, learn_into, test_choices};
+use engine::judge::{FactId, FactRead};
 use engine::learner::Policy;
 use engine::random::{Random, Stream};
 use engine::robot::Robot;
@@ -46,9 +47,22 @@ pub(super) struct RuleTrial {
     pub longest: u64,
     /// The greatest value that it added, either way.
     pub largest: f64,
-    /// What its condition read: name, unit, least, greatest.
-    pub facts: Vec<(String, &'static str, f64, f64)>,
+    /// What its condition read.
+    pub facts: Vec<FactTrial>,
     now: u64,
+}
+
+/// What one fact was in the steps in which a rule was looked at.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct FactTrial {
+    /// As it stands in the script.
+    pub name: String,
+    /// Nothing for what was calibrated.
+    pub id: Option<FactId>,
+    /// In words; empty for flags.
+    pub unit: &'static str,
+    pub least: f64,
+    pub greatest: f64,
 }
 
 /// What one drive left.
@@ -119,16 +133,18 @@ impl RuleTrial {
         if other.largest.abs() > self.largest.abs() {
             self.largest = other.largest;
         }
-        for (name, unit, low, high) in &other.facts {
-            self.read(name, unit, *low);
-            self.read(name, unit, *high);
+        for fact in &other.facts {
+            self.read(fact.clone());
         }
     }
 
-    fn read(&mut self, name: &str, unit: &'static str, value: f64) {
-        match self.facts.iter_mut().find(|fact| fact.0 == name) {
-            Some((_, _, low, high)) => (*low, *high) = (low.min(value), high.max(value)),
-            None => self.facts.push((name.to_owned(), unit, value, value)),
+    fn read(&mut self, read: FactTrial) {
+        match self.facts.iter_mut().find(|fact| fact.name == read.name) {
+            Some(fact) => {
+                fact.least = fact.least.min(read.least);
+                fact.greatest = fact.greatest.max(read.greatest);
+            }
+            None => self.facts.push(read),
         }
     }
 
@@ -190,7 +206,8 @@ fn look<R: Robot>(cycle: &Cycle<R>, recovered: bool, recovers: &[bool], rules: &
         // A rule that fires needs no explanation.
         if rule.fired == 0 {
             for fact in judge.evidence(index).into_iter().flat_map(|part| part.facts) {
-                rule.read(&fact.name, fact.unit, fact.value);
+                let FactRead { name, id, unit, value, .. } = fact;
+                rule.read(FactTrial { name, id, unit, least: value, greatest: value });
             }
         }
     }

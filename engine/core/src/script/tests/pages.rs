@@ -56,7 +56,8 @@ fn every_form_in_the_lists_works() {
     for row in SETUP {
         super::parse(&format!("{} rule \"a\" when true => 1;", row.form)).unwrap_or_else(|wrong| panic!("{wrong:?}"));
     }
-    for fact in FACTS {
+    let values = || FACTS.iter().filter(|fact| fact.form().is_none());
+    for fact in values().filter(|fact| fact.group != "sector") {
         let script = format!("fn reward(facts) {{ let got = facts.{}; 1 }}", fact.name());
         super::parse(&script).unwrap_or_else(|wrong| panic!("{script}: {wrong:?}"));
     }
@@ -65,7 +66,12 @@ fn every_form_in_the_lists_works() {
 #[test]
 fn the_definitions_name_every_fact() {
     let text = definitions();
-    assert!(FACTS.iter().all(|fact| text.contains(&format!("fn get {}({}: ", fact.key, fact.group))));
+    assert!(
+        FACTS
+            .iter()
+            .filter(|fact| fact.form().is_none())
+            .all(|fact| text.contains(&format!("fn get {}({}: ", fact.key, fact.group)))
+    );
 }
 
 #[test]

@@ -109,8 +109,8 @@ impl Writer {
         facts.cells = (0..9).map(|_| unit() as f32).collect();
         facts.grid = (3, 3);
         facts.coverage = unit();
-        (facts.action_linear, facts.action_angular) = (unit(), unit() - 0.5);
-        (facts.linear, facts.angular) = (unit() * 2.0 - 1.0, unit() - 0.5);
+        (facts.action_linear_m_per_s, facts.action_angular_rad_per_s) = (unit(), unit() - 0.5);
+        (facts.linear_m_per_s, facts.angular_rad_per_s) = (unit() * 2.0 - 1.0, unit() - 0.5);
         (facts.seen, facts.contact, facts.fallen) = (unit() < 0.5, unit() < 0.5, unit() < 0.5);
         (facts.state, facts.action) = ((unit() * 64.0) as usize, (unit() * 14.0) as usize);
         (facts.step, facts.since_recovery) = ((unit() * 1000.0) as u64, (unit() * 5.0) as u64);
