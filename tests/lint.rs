@@ -28,7 +28,7 @@ fn found(path: &std::path::Path) -> Vec<(String, usize)> {
             return vec![(error.code.to_owned(), place.source.position(place.span.start).0)];
         }
     };
-    let findings = lint::check(&plan).unwrap().findings;
+    let findings = lint::check_behaviour(&plan).unwrap().findings;
     findings.iter().map(|finding| (finding.code.to_owned(), finding.line)).collect()
 }
 
@@ -59,21 +59,21 @@ fn nothing_is_found_in_scripts_that_ship() {
 #[test]
 fn the_same_script_gives_the_same_report() {
     let plan = plan(&root().join("scripts/corridor.rhai")).unwrap();
-    let report = || serde_json::to_string(&lint::check(&plan).unwrap()).unwrap();
+    let report = || serde_json::to_string(&lint::check_behaviour(&plan).unwrap()).unwrap();
     assert_eq!(report(), report());
 }
 
 #[test]
 fn a_check_that_is_stopped_finds_nothing() {
     let plan = plan(&root().join("scripts/corridor.rhai")).unwrap();
-    assert!(lint::check_until(&plan, 0, &true.into()).unwrap().is_none());
-    assert!(lint::check_until(&plan, 1, &false.into()).unwrap().is_some());
+    assert!(lint::check_behaviour_until(&plan, 0, &true.into()).unwrap().is_none());
+    assert!(lint::check_behaviour_until(&plan, 1, &false.into()).unwrap().is_some());
 }
 
 #[test]
 fn spinning_is_shown_to_get_nowhere_and_driving_to_get_along() {
     let plan = plan(&root().join("scripts/corridor.rhai")).unwrap();
-    let exploits = lint::check(&plan).unwrap().exploits.unwrap();
+    let exploits = lint::check_behaviour(&plan).unwrap().exploits.unwrap();
     let of = |name: &str| exploits.behaviours.iter().find(|exploit| exploit.behaviour.starts_with(name)).unwrap();
     let (best, spin) = (of("best"), of("spin in place, left"));
     assert!(!best.nowhere && best.net_m_per_s.unwrap().abs() > 0.1, "{best:?}");
@@ -105,7 +105,7 @@ fn a_script_that_fails_in_a_step_is_an_error_in_its_line() {
     let bench = Bench::new();
     let text = "world(\"small\");\nfn reward(facts) {\n    let list = [1.0];\n    list[facts.time.step]\n}\n";
     bench.write("fails.rhai", text);
-    let report = lint::check(&plan(&bench.path().join("fails.rhai")).unwrap()).unwrap();
+    let report = lint::check_behaviour(&plan(&bench.path().join("fails.rhai")).unwrap()).unwrap();
     let first = report.findings.iter().find(|finding| finding.severity == Severity::Error).unwrap();
     assert_eq!((first.code, first.line), ("E-SCRIPT-RUN", 4));
     assert!(report.exploits.is_none());

@@ -17,7 +17,7 @@ const SEEDS: usize = 3;
 
 /// Something to mend.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Finding {
+pub struct PackFinding {
     /// What it is about: `license`, `capability`, `evidence`, `description`.
     pub about: &'static str,
     /// What is wrong and what to do.
@@ -29,17 +29,17 @@ pub struct Finding {
 ///
 /// # Errors
 /// If it cannot be a pack at all, or does not load.
-pub fn check(
+pub fn check_pack(
     folder: &Path,
     depends: &[Pack],
     sources: Sources,
     stop: &AtomicBool,
     report: &(dyn Fn(Progress) + Sync),
-) -> Result<Vec<Finding>> {
+) -> Result<Vec<PackFinding>> {
     let author = Author::load(folder)?;
     let pack = draft(folder)?;
     let mut findings = Vec::new();
-    let mut find = |about, text| findings.push(Finding { about, text });
+    let mut find = |about, text| findings.push(PackFinding { about, text });
     let licensed = |path: &str| ["license", "licence", "copying"].iter().any(|start| path.starts_with(start));
     if !author.files.iter().any(|path| licensed(path.as_str())) {
         find("license", format!("the text of '{}' is missing: add a file 'license' to 'files'", author.license));

@@ -29,13 +29,13 @@ pub struct Evidence {
     pub policy_seed: Option<u64>,
     /// One claim for each seed.
     #[serde(rename = "seed")]
-    pub seeds: Vec<Claim>,
+    pub seeds: Vec<SeedClaim>,
 }
 
 /// The figures of one seed, as in `summary.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Claim {
+pub struct SeedClaim {
     /// The seed.
     pub seed: u64,
     /// Hash over every step of learning and the table; for a combination, over every step of its test.
@@ -68,7 +68,7 @@ pub struct Claim {
 /// What was measured for one seed.
 pub struct Proof {
     /// The figures.
-    pub claim: Claim,
+    pub claim: SeedClaim,
     /// What was learned; nothing for a combination.
     pub policy: Option<Policy>,
     /// The path of the first steps of learning; nothing for a combination.
@@ -145,9 +145,9 @@ fn proof(plan: &Plan, seed: u64, stop: &AtomicBool, report: &(dyn Fn(Progress) +
     Ok(Proof { claim, policy, early, tested, marks })
 }
 
-fn claim(summary: Summary, tested: &TestRun) -> Claim {
+fn claim(summary: Summary, tested: &TestRun) -> SeedClaim {
     let Summary { seed, state_hash, states_seen, learned_at, reinforcement_per_400, test: figures, .. } = summary;
-    Claim {
+    SeedClaim {
         seed,
         state_hash,
         test_hash: tested.state_hash.clone(),
@@ -187,7 +187,7 @@ impl Evidence {
 
     /// The claim that is shown first: that of the policy, or the first.
     #[must_use]
-    pub fn shown(&self) -> Option<&Claim> {
+    pub fn shown(&self) -> Option<&SeedClaim> {
         let carried = self.seeds.iter().find(|claim| Some(claim.seed) == self.policy_seed);
         carried.or_else(|| self.seeds.first())
     }
@@ -244,7 +244,7 @@ fn policy_difference(
     }
 }
 
-fn difference(claimed: &Claim, proof: &Proof, steps: &str) -> Option<Difference> {
+fn difference(claimed: &SeedClaim, proof: &Proof, steps: &str) -> Option<Difference> {
     let measured = &proof.claim;
     if claimed == measured {
         return None;

@@ -8,7 +8,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
 use super::author::PICTURE;
-use super::{Claim, Evidence, Pack, Signature, TrustStore};
+use super::{Evidence, Pack, SeedClaim, Signature, TrustStore};
 use engine::diagnostic::{Diagnostic, Result, printable};
 use insight::words::bounded;
 
@@ -164,7 +164,7 @@ fn write_curve(page: &mut String, evidence: &Evidence) -> std::fmt::Result {
 fn write_figures(page: &mut String, evidence: &Evidence) -> std::fmt::Result {
     let learned = evidence.seeds.iter().filter(|claim| claim.learned_at.is_some()).count();
     let Some(claim) = evidence.shown() else { return Ok(()) };
-    let Claim { seed, failures_per_1000, laps, contacts, mean_speed, .. } = claim;
+    let SeedClaim { seed, failures_per_1000, laps, contacts, mean_speed, .. } = claim;
     let mut rows = Vec::new();
     if evidence.steps > 0 {
         rows.push(("seeds that learned", format!("{learned} of {}", evidence.seeds.len())));

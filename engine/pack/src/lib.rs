@@ -25,11 +25,11 @@ mod trust;
 
 pub use author::{Author, build, draft};
 pub use bundle::Pack;
-pub use check::{Finding, check};
+pub use check::{PackFinding, check_pack};
 pub use engine::digest::Digest;
 pub use entry_path::EntryPath;
 pub use evidence::measure;
-pub use evidence::{Claim, Difference, Evidence, Proof, replay};
+pub use evidence::{Difference, Evidence, Proof, SeedClaim, replay};
 pub use gallery::{Card, SignatureLine, gallery, signature_line};
 pub use lock::{Lock, Locked};
 pub use manifest::{Capabilities, Dependency, Entry, FileLine, Manifest};

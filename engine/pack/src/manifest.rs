@@ -117,7 +117,7 @@ impl Capabilities {
 }
 
 #[derive(Deserialize)]
-struct FormatLine {
+struct ManifestFormat {
     format: u32,
 }
 
@@ -132,7 +132,7 @@ impl Manifest {
                 format!("the manifest has {} bytes, at most {MAX_MANIFEST_BYTES} are read", source.text.len());
             return malformed("E-PACK-LIMIT", message).fail();
         }
-        let FormatLine { format } = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
+        let ManifestFormat { format } = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
         if format != FORMAT {
             let message = format!("the pack has format {format}, this engine reads format {FORMAT}");
             return malformed("E-PACK-FORMAT", message).help("use a newer engine").fail();

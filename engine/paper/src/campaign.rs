@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use super::claims::{CLAIMS, Claim};
-use super::job::{Learn, Look, Trial};
-use super::looks::{Seen, Watcher};
+use super::job::{Learn, Trial};
+use super::looks::{Look, Seen, Watcher};
 use engine::diagnostic::Result;
 use engine::experiment::{
     Overrides, Plan, Summary, TestFigures, TestRun, Trail, WINDOW_STEPS, in_parallel, learn, test, test_and_watch,

@@ -3,7 +3,8 @@
 //! Quintía, Domenech, Gamallo and Regueiro, "Methodology for learning visual reactive behaviours in robotics through
 //! reinforcement and image-based states", ICINCO 2007.
 
-use super::job::{Learn, Look, Metric, Trial};
+use super::job::{Learn, Metric, Trial};
+use super::looks::Look;
 use super::verdict::Rule;
 
 /// One claim, and how it is measured and judged.

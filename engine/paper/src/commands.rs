@@ -2,7 +2,7 @@
 
 use super::campaign::Options;
 use super::claims::Claim;
-use super::job::Look;
+use super::looks::Look;
 
 /// The command for a claim.
 pub(super) fn command(claim: &Claim, options: &Options) -> String {

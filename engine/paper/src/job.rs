@@ -1,6 +1,6 @@
 //! What has to be learned and tested for a claim, as plain data. Equal jobs are done once.
 
-use super::looks::Seen;
+use super::looks::{Look, Seen};
 use engine::experiment::{Summary, TestFigures, WINDOW_STEPS};
 
 /// Learning one script under several seeds, each followed by the script's own test.
@@ -55,19 +55,6 @@ pub struct Trial {
     pub steps: u64,
     /// What is looked at besides the figures of every test.
     pub look: Look,
-}
-
-/// What a trial looks at, from the truth.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Look {
-    /// The figures of every test, nothing else.
-    Figures,
-    /// How much robot and prey turn on their way.
-    Bends,
-    /// Which way it goes at crossings.
-    Crossings,
-    /// What follows on each state.
-    States,
 }
 
 /// The number of one seed that a claim is about.

@@ -3,7 +3,6 @@
 use std::f64::consts::FRAC_PI_3;
 use std::ops::ControlFlow;
 
-use super::job::Look;
 use engine::experiment::{Cycle, Observer, Step};
 use engine::geometry::{Pose, wrap_angle};
 use engine::robot::Robot;
@@ -18,6 +17,19 @@ const CROSSING_M: f64 = 3.0;
 const OFTEN: usize = 20;
 /// Ranges beyond this are alike when two situations are compared, metres.
 const FAR_M: f32 = 4.0;
+
+/// What a trial looks at, from the truth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Look {
+    /// The figures of every test, nothing else.
+    Figures,
+    /// How much robot and prey turn on their way.
+    Bends,
+    /// Which way it goes at crossings.
+    Crossings,
+    /// What follows on each state.
+    States,
+}
 
 /// What was seen; not a number where there was nothing to see.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -8,7 +8,7 @@ use insight::lint;
 
 /// Checks a run that is on the board, and says there what was found.
 pub(super) fn tell(board: &Board, run: &SavedRun, threads: usize, stop: &AtomicBool) {
-    match lint::check_until(&run.plan, threads, stop) {
+    match lint::check_behaviour_until(&run.plan, threads, stop) {
         Ok(Some(report)) => board.checked(run, &report),
         Ok(None) => {}
         // What learned and was tested without a fault fails here only on a limit: worth a word, not an error of the save.

@@ -48,7 +48,7 @@ impl Member {
 ///
 /// # Errors
 /// For the first mistake, at its call.
-pub(super) fn check(behaviour: &Behaviour, settings: &Settings) -> Result<()> {
+pub(super) fn check_policies(behaviour: &Behaviour, settings: &Settings) -> Result<()> {
     let at = |place: &str, message: String, label: &str, help: &str| -> Result<()> {
         let error = Diagnostic::new("E-POLICY", message).help(help);
         match behaviour.place_of(place) {

@@ -20,7 +20,7 @@ const PLACES: usize = 16;
 ///
 /// # Errors
 /// `E-FILTER-BLIND` if they leave none anywhere.
-pub(super) fn check(plan: &Plan) -> Result<()> {
+pub(super) fn check_outlook(plan: &Plan) -> Result<()> {
     let (settings, layout) = (&plan.settings, &plan.layout);
     let mut world = World::new(Arc::clone(layout), &[settings.robot], settings.run.period_s, 0);
     // Noise would be taken for something seen.

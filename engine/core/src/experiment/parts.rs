@@ -21,7 +21,7 @@ impl Parts<'_> {
     /// Tries every part whose settings are read. Gives whether the robot will see: there are a chain and a grid.
     pub(super) fn check(&self, unread: &Unread, mistakes: &mut Mistakes) -> bool {
         if !unread.any_of("policy") && !unread.any_of("combine") {
-            mistakes.take(combination::check(self.behaviour, self.settings));
+            mistakes.take(combination::check_policies(self.behaviour, self.settings));
         }
         let camera = !unread.has("camera", "width_px") && !unread.has("camera", "height_px");
         let chain = camera && !unread.any_of("filter") && mistakes.take(self.tried_chain()).is_some();

@@ -155,7 +155,7 @@ impl Plan {
             && mistakes.take(SimulatedRobot::new(&plan.layout, &plan.settings, 0)).is_some()
             && sees
         {
-            mistakes.take(outlook::check(&plan));
+            mistakes.take(outlook::check_outlook(&plan));
         }
         mistakes.end().map(|()| plan)
     }

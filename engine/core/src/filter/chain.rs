@@ -150,7 +150,7 @@ impl Chain {
 /// An instance; of a stranger's filter only after it was seen to keep the law with these values.
 fn create(entry: &Arc<Entry>, values: &[f64], reads: Format) -> Result<Box<dyn Running>> {
     if entry.form != Form::LinkedIn {
-        purity::check(entry, values, reads)?;
+        purity::check_purity(entry, values, reads)?;
     }
     (entry.create)(values)
 }

@@ -24,7 +24,7 @@ pub fn conformance(entry: &Entry) -> Result<u64> {
         // Values may be in range and yet not go together, but never the defaults, nor all at their least or greatest.
         let must = index == 0 || index + 2 >= all.len();
         match (entry.create)(values) {
-            Ok(used) => frames += check(entry, values, used)?,
+            Ok(used) => frames += check_instance(entry, values, used)?,
             Err(error) if must => return Err(error),
             Err(_) => {}
         }
@@ -33,7 +33,7 @@ pub fn conformance(entry: &Entry) -> Result<u64> {
 }
 
 /// One set of values: an instance that has seen other frames answers as a fresh one does.
-fn check(entry: &Entry, values: &[f64], mut used: Box<dyn Running>) -> Result<u64> {
+fn check_instance(entry: &Entry, values: &[f64], mut used: Box<dyn Running>) -> Result<u64> {
     let mut frames = 0;
     for format in entry.descriptor.reads {
         for (index, size) in SIZES.into_iter().enumerate() {

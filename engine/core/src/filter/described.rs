@@ -16,7 +16,7 @@ pub(super) const LONGEST_TEXT_BYTES: usize = 800;
 
 /// A descriptor as it was found, not checked yet.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Described {
+pub(super) struct DescribedFilter {
     pub(super) name: String,
     pub(super) version: String,
     pub(super) licence: String,
@@ -38,7 +38,7 @@ pub(super) struct DescribedParameter {
     pub(super) default: f64,
 }
 
-impl Described {
+impl DescribedFilter {
     /// The descriptor, if it keeps the law. It lives as long as the program: libraries are never unloaded.
     ///
     /// # Errors
@@ -150,7 +150,7 @@ pub(super) fn check_frames(descriptor: &Descriptor, input: &Frame<'_>, output: &
 mod tests {
     use super::*;
 
-    fn ink() -> Described {
+    fn ink() -> DescribedFilter {
         let text = |words: &str| words.to_owned();
         let level = DescribedParameter {
             name: text("level"),
@@ -161,7 +161,7 @@ mod tests {
             max: 255.0,
             default: 40.0,
         };
-        Described {
+        DescribedFilter {
             name: text("ink"),
             version: text("1.0"),
             licence: text("MIT"),
@@ -177,14 +177,15 @@ mod tests {
         let descriptor = ink().check("E-NATIVE-ABI", Path::new("ink.so")).unwrap();
         assert_eq!((descriptor.name, descriptor.writes), ("ink", Format::Mask));
         assert_eq!(descriptor.reads, [Format::Rgb, Format::Grey]);
-        let bright = Described { reads: 3 | BRIGHTNESS, ..ink() }.check("E-NATIVE-ABI", Path::new("ink.so")).unwrap();
+        let bright =
+            DescribedFilter { reads: 3 | BRIGHTNESS, ..ink() }.check("E-NATIVE-ABI", Path::new("ink.so")).unwrap();
         assert_eq!(bright.reads, [Format::Grey, Format::Rgb]);
         assert_eq!(descriptor.parameters[0].kind, ParameterKind::Whole);
     }
 
     #[test]
     fn every_broken_clause_is_named() {
-        let fault = |change: fn(&mut Described)| {
+        let fault = |change: fn(&mut DescribedFilter)| {
             let mut described = ink();
             change(&mut described);
             described.check("E-NATIVE-ABI", Path::new("ink.so")).err().unwrap().message

@@ -16,7 +16,7 @@ const ORDER: [u32; 5] = [0, 1, 1, 2, 0];
 ///
 /// # Errors
 /// If it fails on one of them, answers differently when a frame comes again, or writes a mask that is none.
-pub(super) fn check(entry: &Entry, values: &[f64], reads: Format) -> Result<()> {
+pub(super) fn check_purity(entry: &Entry, values: &[f64], reads: Format) -> Result<()> {
     let writes = entry.descriptor.writes;
     let mut first: [Option<Vec<u8>>; 3] = [None, None, None];
     for round in 0..2 {

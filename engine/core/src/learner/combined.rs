@@ -21,7 +21,7 @@ use crate::stats::Sorted;
 #[derive(Debug, Clone)]
 pub struct Combined {
     /// By policy and state; `None` where the policy never met the state.
-    members: Vec<Vec<Option<Row>>>,
+    members: Vec<Vec<Option<MemberRow>>>,
     by_priority: bool,
     softmax: Softmax,
     sum: Vec<f64>,
@@ -30,7 +30,7 @@ pub struct Combined {
 
 /// What one policy has to say in one state.
 #[derive(Debug, Clone)]
-struct Row {
+struct MemberRow {
     /// Its values as they count: as learned (priority), or mean-free and scaled (sum).
     values: Vec<f64>,
     best: usize,
@@ -61,7 +61,7 @@ impl Combined {
                 let median = values.iter().copied().collect::<Sorted>().midpoint_median().unwrap_or(0.0);
                 let cares = greatest - median >= settings.margin;
                 let values = if by_priority { values.to_vec() } else { mean_free(values, divisor) };
-                Row { values, best, cares }
+                MemberRow { values, best, cares }
             };
             policy.rows().iter().map(|known| known.as_ref().map(|known| row(&known.values))).collect()
         });
@@ -119,7 +119,7 @@ impl Combined {
     }
 }
 
-fn known(member: &[Option<Row>], state: usize) -> Option<&Row> {
+fn known(member: &[Option<MemberRow>], state: usize) -> Option<&MemberRow> {
     member.get(state)?.as_ref()
 }
 

@@ -1,6 +1,6 @@
 //! The camera: draws what stands before it, visible faces first and colours afterwards.
 
-use super::canvas::{Canvas, Colours, Weights};
+use super::canvas::{Colours, PixelCanvas, Weights};
 use super::drawing::Drawing;
 use super::lens::Fisheye;
 use super::luma;
@@ -10,8 +10,8 @@ use super::painting::{Drawn, Painting};
 use super::spans::Spans;
 use super::stretches::{FLOOR_FACE, OUTSIDE_LENS, SKY_FACE, Sight, Stretches};
 use super::surface::Surfaces;
-use super::texture::{Looks, Mark};
-use super::view::{Affine, Frustum, Pinhole, View};
+use super::texture::{Looks, PaintMark};
+use super::view::{Affine, CameraView, Frustum, Pinhole};
 use crate::geometry::{Isometry3, Point3, Vector3};
 use crate::settings::{CameraSettings, Lens};
 use crate::world::scene::{Scene, Solid};
@@ -41,7 +41,7 @@ pub struct Camera {
     surfaces: Surfaces,
     moving: Surfaces,
     looks: Looks,
-    standing_looks: Mark,
+    standing_looks: PaintMark,
     spans: Spans,
     stretches: Stretches,
     seen: Vec<usize>,
@@ -152,7 +152,7 @@ impl Camera {
         }
     }
 
-    fn paint_on<C: Canvas>(&self, canvas: C) {
+    fn paint_on<C: PixelCanvas>(&self, canvas: C) {
         self.processor.run(Painting {
             canvas,
             stretches: &self.stretches,
@@ -199,11 +199,11 @@ impl Camera {
         self.weights = weights;
     }
 
-    fn view(&self, world_from_robot: &Isometry3) -> View {
+    fn view(&self, world_from_robot: &Isometry3) -> CameraView {
         let turn = world_from_robot.rotation.to_rotation_matrix();
         let [place, right, down, forward] = self.mount.map(|vector| turn * vector);
         let position = world_from_robot.translation.vector + place;
-        View { pinhole: self.pinhole, position, right, down, forward }
+        CameraView { pinhole: self.pinhole, position, right, down, forward }
     }
 
     /// Makes faces of the movers that may be in sight.
@@ -224,7 +224,7 @@ impl Camera {
     }
 
     /// Fills the spans with everything in sight.
-    fn find_visible(&mut self, view: &View, frustum: &Frustum) {
+    fn find_visible(&mut self, view: &CameraView, frustum: &Frustum) {
         self.spans.clear();
         self.drawn.clear();
         self.nearness.clear();

@@ -2,29 +2,29 @@
 //!
 //! A stretch may be painted too long, since what follows is painted afterwards; so every write has a fixed length.
 
-use super::texture::{Look, Looks, PATTERN_PX};
+use super::texture::{Looks, PATTERN_PX, TextureLook};
 use std::ops::Range;
 
 /// Something to paint on, pixels numbered row by row.
-pub(super) trait Canvas {
+pub(super) trait PixelCanvas {
     /// Paints pixels in the plain colour of a look, and perhaps some after them.
-    fn fill(&mut self, look: &Look, pixels: Range<usize>);
+    fn fill(&mut self, look: &TextureLook, pixels: Range<usize>);
 
     /// Paints pixels from number `first` on, each in a colour of the look's palette.
-    fn spots(&mut self, looks: &Looks, look: &Look, first: usize, indices: &[u8]);
+    fn spots(&mut self, looks: &Looks, look: &TextureLook, first: usize, indices: &[u8]);
 }
 
 /// Three bytes for each pixel.
 pub(super) struct Colours<'a>(pub(super) &'a mut [u8]);
 
-impl Canvas for Colours<'_> {
+impl PixelCanvas for Colours<'_> {
     #[inline(always)]
-    fn fill(&mut self, look: &Look, pixels: Range<usize>) {
+    fn fill(&mut self, look: &TextureLook, pixels: Range<usize>) {
         write_over(self.0, &look.pattern, 3 * pixels.start..3 * pixels.end);
     }
 
     #[inline(always)]
-    fn spots(&mut self, looks: &Looks, look: &Look, first: usize, indices: &[u8]) {
+    fn spots(&mut self, looks: &Looks, look: &TextureLook, first: usize, indices: &[u8]) {
         let palette = looks.palette(look);
         for (place, &index) in indices.iter().enumerate() {
             let byte = (first + place) * 3;
@@ -41,14 +41,14 @@ impl Canvas for Colours<'_> {
 /// For each pixel the weighted sum of its channels, 256 times its luma.
 pub(super) struct Weights<'a>(pub(super) &'a mut [u16]);
 
-impl Canvas for Weights<'_> {
+impl PixelCanvas for Weights<'_> {
     #[inline(always)]
-    fn fill(&mut self, look: &Look, pixels: Range<usize>) {
+    fn fill(&mut self, look: &TextureLook, pixels: Range<usize>) {
         write_over(self.0, &[look.weight; 2 * PATTERN_PX], pixels);
     }
 
     #[inline(always)]
-    fn spots(&mut self, _: &Looks, look: &Look, first: usize, indices: &[u8]) {
+    fn spots(&mut self, _: &Looks, look: &TextureLook, first: usize, indices: &[u8]) {
         let [start, step] = look.weights;
         for (pixel, index) in self.0[first..first + indices.len()].iter_mut().zip(indices) {
             *pixel = start.wrapping_add(step.wrapping_mul(u16::from(*index)));

@@ -4,7 +4,7 @@ use super::painting::Drawn;
 use super::spans::Spans;
 use super::surface::{CYLINDER_SIDES, Face, Surfaces};
 use super::texture::Looks;
-use super::view::{Affine, NEAR_M, View};
+use super::view::{Affine, CameraView, NEAR_M};
 use crate::geometry::Vector3;
 
 /// Corners of the largest polygon: a cylinder's cap, clipped twice.
@@ -12,7 +12,7 @@ const MOST_CORNERS: usize = CYLINDER_SIDES + 4;
 
 /// Where faces are drawn to.
 pub(super) struct Drawing<'a> {
-    pub(super) view: &'a View,
+    pub(super) view: &'a CameraView,
     pub(super) looks: &'a Looks,
     pub(super) spans: &'a mut Spans,
     pub(super) drawn: &'a mut Vec<Drawn>,

@@ -1,9 +1,9 @@
 //! Turns the list of what is seen into pixels, in the order of the image's memory.
 
-use super::canvas::Canvas;
+use super::canvas::PixelCanvas;
 use super::lens::Fisheye;
 use super::stretches::{Stretch, Stretches};
-use super::texture::{BATCH, Look, Looks};
+use super::texture::{BATCH, Looks, TextureLook};
 use super::view::Affine;
 use dispatch::Work;
 
@@ -32,7 +32,7 @@ pub(super) struct Painting<'a, C> {
 /// Texture coordinates of a batch of places, along and across, metres.
 type Places = [[f32; BATCH]; 2];
 
-impl<C: Canvas> Work for Painting<'_, C> {
+impl<C: PixelCanvas> Work for Painting<'_, C> {
     type Output = ();
 
     #[inline(always)]
@@ -63,7 +63,7 @@ impl<C: Canvas> Work for Painting<'_, C> {
     }
 }
 
-impl<C: Canvas> Painting<'_, C> {
+impl<C: PixelCanvas> Painting<'_, C> {
     /// The three values of a face that are affine over the image: along, across, nearness.
     #[inline(always)]
     fn affine(&self, stretch: Stretch) -> [Affine; 3] {
@@ -105,7 +105,7 @@ impl<C: Canvas> Painting<'_, C> {
     }
 
     #[inline(always)]
-    fn spots(&mut self, look: &Look, first: usize, count: usize, [along, across]: &Places) {
+    fn spots(&mut self, look: &TextureLook, first: usize, count: usize, [along, across]: &Places) {
         let mut indices = [0; BATCH];
         look.choose(along, across, &mut indices);
         self.canvas.spots(self.looks, look, first, &indices[..count]);

@@ -14,7 +14,7 @@ const LATTICE: usize = 128;
 
 /// How the places of a surface choose among its colours.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Choice {
+enum TextureChoice {
     Plain,
     Checker,
     Stripes,
@@ -24,7 +24,7 @@ enum Choice {
 
 /// The finished colours of one face.
 #[derive(Debug, Clone)]
-pub(super) struct Look {
+pub(super) struct TextureLook {
     /// One stretch of the plain colour.
     pub(super) pattern: [u8; PATTERN_PX * 3],
     /// The plain colour's weighted sum, 256 times its luma.
@@ -32,7 +32,7 @@ pub(super) struct Look {
     /// The weighted sum of the first colour in the palette, and how much more that of each next one is; true unless a
     /// colour is black or white in some channel.
     pub(super) weights: [u16; 2],
-    choice: Choice,
+    choice: TextureChoice,
     per_m: f32,
     /// First colour of this look in the palette.
     palette_start: usize,
@@ -41,7 +41,7 @@ pub(super) struct Look {
 /// Looks and their colours, four bytes each so that a colour is one word.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Looks {
-    looks: Vec<Look>,
+    looks: Vec<TextureLook>,
     palette: Vec<[u8; 4]>,
     range: Extremes,
 }
@@ -52,7 +52,7 @@ struct Extremes(u8, u8);
 
 /// How far a list of looks has come.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Mark {
+pub(super) struct PaintMark {
     pub(super) looks: usize,
     colours: usize,
     range: Extremes,
@@ -67,12 +67,12 @@ impl Default for Extremes {
 impl Looks {
     /// The look with this index.
     #[inline(always)]
-    pub(super) fn get(&self, index: usize) -> &Look {
+    pub(super) fn get(&self, index: usize) -> &TextureLook {
         &self.looks[index]
     }
 
     /// Colours of a look.
-    pub(super) fn palette(&self, look: &Look) -> &[[u8; 4]] {
+    pub(super) fn palette(&self, look: &TextureLook) -> &[[u8; 4]] {
         &self.palette[look.palette_start..]
     }
 
@@ -82,8 +82,8 @@ impl Looks {
     }
 
     /// What there is now.
-    pub(super) fn mark(&self) -> Mark {
-        Mark { looks: self.looks.len(), colours: self.palette.len(), range: self.range }
+    pub(super) fn mark(&self) -> PaintMark {
+        PaintMark { looks: self.looks.len(), colours: self.palette.len(), range: self.range }
     }
 
     /// Makes room for so many looks more.
@@ -93,7 +93,7 @@ impl Looks {
     }
 
     /// Forgets what came after a mark.
-    pub(super) fn truncate(&mut self, mark: Mark) {
+    pub(super) fn truncate(&mut self, mark: PaintMark) {
         self.looks.truncate(mark.looks);
         self.palette.truncate(mark.colours);
         self.range = mark.range;
@@ -107,7 +107,14 @@ impl Looks {
         }
         let palette_start = self.palette.len();
         let weight = weight(colour);
-        self.looks.push(Look { pattern, weight, weights: [0; 2], choice: Choice::Plain, per_m: 0.0, palette_start });
+        self.looks.push(TextureLook {
+            pattern,
+            weight,
+            weights: [0; 2],
+            choice: TextureChoice::Plain,
+            per_m: 0.0,
+            palette_start,
+        });
         self.widen(colour);
     }
 
@@ -131,14 +138,14 @@ impl Looks {
         self.push_plain(lighter(0.0));
         let (choice, amplitude, scale_m) = match material.texture {
             Texture::Plain => return,
-            Texture::Checker { amplitude, scale_m } => (Choice::Checker, amplitude, scale_m),
-            Texture::Stripes { amplitude, scale_m } => (Choice::Stripes, amplitude, scale_m),
+            Texture::Checker { amplitude, scale_m } => (TextureChoice::Checker, amplitude, scale_m),
+            Texture::Stripes { amplitude, scale_m } => (TextureChoice::Stripes, amplitude, scale_m),
             Texture::Noise { amplitude, scale_m } => {
                 let amplitude = amplitude.round().clamp(0.0, 127.0);
-                (Choice::Noise(amplitude as f32), amplitude, scale_m)
+                (TextureChoice::Noise(amplitude as f32), amplitude, scale_m)
             }
         };
-        if let Choice::Noise(amplitude) = choice {
+        if let TextureChoice::Noise(amplitude) = choice {
             let most = amplitude as i32;
             (-most..=most).for_each(|by| self.push_colour(lighter(f64::from(by))));
         } else {
@@ -164,29 +171,29 @@ fn floor(value: f32) -> (u32, f32) {
     (shifted.to_bits(), shifted - TO_WHOLE)
 }
 
-impl Look {
+impl TextureLook {
     /// Whether one colour is all there is.
     #[inline(always)]
     pub(super) fn is_plain(&self) -> bool {
-        self.choice == Choice::Plain
+        self.choice == TextureChoice::Plain
     }
 
     /// The colour of each place: its index in this look's palette. Places in metres along the surface's two axes.
     #[inline(always)]
     pub(super) fn choose(&self, along: &[f32; BATCH], across: &[f32; BATCH], indices: &mut [u8; BATCH]) {
         match self.choice {
-            Choice::Plain => *indices = [0; BATCH],
-            Choice::Checker => {
+            TextureChoice::Plain => *indices = [0; BATCH],
+            TextureChoice::Checker => {
                 for ((index, along), across) in indices.iter_mut().zip(along).zip(across) {
                     *index = ((floor(along * self.per_m).0 ^ floor(across * self.per_m).0) & 1) as u8;
                 }
             }
-            Choice::Stripes => {
+            TextureChoice::Stripes => {
                 for (index, across) in indices.iter_mut().zip(across) {
                     *index = (floor(across * self.per_m).0 & 1) as u8;
                 }
             }
-            Choice::Noise(amplitude) => self.noise(amplitude, along, across, indices),
+            TextureChoice::Noise(amplitude) => self.noise(amplitude, along, across, indices),
         }
     }
 

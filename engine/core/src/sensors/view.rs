@@ -41,7 +41,7 @@ pub(super) struct Pinhole {
 
 /// A pinhole camera at its place in the world.
 #[derive(Debug, Clone)]
-pub(super) struct View {
+pub(super) struct CameraView {
     pub(super) pinhole: Pinhole,
     pub(super) position: Vector3,
     /// Unit vectors along the image's rows, along its columns, and out of the lens.
@@ -50,7 +50,7 @@ pub(super) struct View {
     pub(super) forward: Vector3,
 }
 
-impl View {
+impl CameraView {
     /// A point in the view's own axes: right, down, forward.
     pub(super) fn local(&self, point: &Vector3) -> Vector3 {
         let from = point - self.position;

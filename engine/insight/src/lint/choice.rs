@@ -1,6 +1,6 @@
 //! Rewards that do not depend on what the robot does.
 
-use super::{Exploit, Exploits, Finding, Trial};
+use super::{Exploit, Exploits, Finding, LintTrial};
 use engine::experiment::{Plan, WINDOW_STEPS};
 
 /// Rewards at random that are needed to tell them from those of another behaviour.
@@ -27,7 +27,7 @@ pub(super) fn written(plan: &Plan, findings: &mut Vec<Finding>) {
 }
 
 /// What the trial shows: the same reward in every step, or for every way of driving.
-pub(super) fn observed(plan: &Plan, trial: &Trial, exploits: &Exploits, findings: &mut Vec<Finding>) {
+pub(super) fn observed(plan: &Plan, trial: &LintTrial, exploits: &Exploits, findings: &mut Vec<Finding>) {
     let Some(first) = trial.transitions.first().map(|step| step.reward) else { return };
     let constant = trial.transitions.iter().all(|step| step.reward == first && !step.recover);
     // Rules that never fired have a finding of their own, and so has what makes them fire always.
@@ -50,7 +50,7 @@ pub(super) fn observed(plan: &Plan, trial: &Trial, exploits: &Exploits, findings
 }
 
 /// What a step earns at random, if no other behaviour earns more or less than chance explains.
-fn alike(trial: &Trial, exploits: &Exploits) -> Option<f64> {
+fn alike(trial: &LintTrial, exploits: &Exploits) -> Option<f64> {
     let rewards: Vec<f64> = trial.random().iter().map(|step| step.reward).collect();
     let count = rewards.len() as f64;
     let mean = rewards.iter().sum::<f64>() / count;

@@ -2,7 +2,7 @@
 
 use super::exploit::Exploits;
 use super::trial::{FactTrial, RuleTrial};
-use super::{Finding, Trial};
+use super::{Finding, LintTrial};
 use engine::diagnostic::printable;
 use engine::experiment::Plan;
 use engine::judge::{FactId, Reach};
@@ -12,7 +12,7 @@ const ENOUGH: u64 = 200;
 /// Share of the steps of a spin in which a condition must hold for its persistence to be blamed.
 const OFTEN: f64 = 0.25;
 
-pub(super) fn check(plan: &Plan, trial: &Trial, exploits: &Exploits, findings: &mut Vec<Finding>) {
+pub(super) fn check_firing(plan: &Plan, trial: &LintTrial, exploits: &Exploits, findings: &mut Vec<Finding>) {
     let (outline, Ok(judge)) = (plan.behaviour.outline(), plan.judge()) else { return };
     for (index, rule) in outline.rules.iter().enumerate() {
         let explained = |finding: &Finding| {

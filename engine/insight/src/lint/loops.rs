@@ -4,7 +4,7 @@ use super::Finding;
 use engine::experiment::Plan;
 use engine::script::Gathers;
 
-pub(super) fn check(plan: &Plan, findings: &mut Vec<Finding>) {
+pub(super) fn check_loops(plan: &Plan, findings: &mut Vec<Finding>) {
     for found in &plan.behaviour.outline().loops {
         let (from, to) = found.beams.unwrap_or((0, plan.settings.laser.beams as i64 - 1));
         let sector = format!("facts.laser.sector({from}, {to})");

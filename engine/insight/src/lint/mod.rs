@@ -19,8 +19,8 @@ mod verdict;
 pub use exploit::{Exploit, Exploits};
 pub use finding::{Finding, Severity};
 pub use model::{Coverage, Model};
-pub use trial::{Trial, TrialStep};
-pub use verdict::Verdict;
+pub use trial::{LintTrial, TrialStep};
+pub use verdict::ExploitVerdict;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -59,15 +59,15 @@ impl Report {
 ///
 /// # Errors
 /// If a sensor or a filter fails, or a limit stops the script; any other failure of it in a step is a finding.
-pub fn check(plan: &Plan) -> Result<Report> {
+pub fn check_behaviour(plan: &Plan) -> Result<Report> {
     look(plan, 0, &AtomicBool::new(false))
 }
 
 /// The same on so many threads (0: one for each core), until `stop` is set: then nothing.
 ///
 /// # Errors
-/// As [`check`].
-pub fn check_until(plan: &Plan, threads: usize, stop: &AtomicBool) -> Result<Option<Report>> {
+/// As [`check_behaviour`].
+pub fn check_behaviour_until(plan: &Plan, threads: usize, stop: &AtomicBool) -> Result<Option<Report>> {
     let report = look(plan, threads, stop)?;
     Ok((!stop.load(Ordering::Relaxed)).then_some(report))
 }
@@ -79,15 +79,15 @@ fn look(plan: &Plan, threads: usize, stop: &AtomicBool) -> Result<Report> {
     let mut findings = read(plan);
     let (mut steps, mut exploits) = (0, None);
     if plan.settings.policies.is_empty() {
-        let tried = Trial::run(plan, threads, stop)
+        let tried = LintTrial::run(plan, threads, stop)
             .and_then(|mut trial| Ok((Exploits::find(plan, &mut trial, threads, stop)?, trial)));
         match tried {
             Ok((found, trial)) => {
                 steps = trial.steps();
-                fired::check(plan, &trial, &found, &mut findings);
+                fired::check_firing(plan, &trial, &found, &mut findings);
                 scale::observed(plan, &trial, &mut findings);
                 choice::observed(plan, &trial, &found, &mut findings);
-                verdict::check(plan, &found, &mut findings);
+                verdict::check_exploits(plan, &found, &mut findings);
                 exploits = Some(found);
             }
             // The script's own mistake is a finding like others; what a limit stopped is none.
@@ -108,11 +108,11 @@ fn look(plan: &Plan, threads: usize, stop: &AtomicBool) -> Result<Report> {
 #[must_use]
 pub fn read(plan: &Plan) -> Vec<Finding> {
     let mut findings = Vec::new();
-    units::check(plan, &mut findings);
-    shadow::check(plan, &mut findings);
-    loops::check(plan, &mut findings);
+    units::check_units(plan, &mut findings);
+    shadow::check_shadows(plan, &mut findings);
+    loops::check_loops(plan, &mut findings);
     scale::written(plan, &mut findings);
-    setup::check(plan, &mut findings);
+    setup::check_setup(plan, &mut findings);
     choice::written(plan, &mut findings);
     findings
 }

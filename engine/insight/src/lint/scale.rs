@@ -1,6 +1,6 @@
 //! Rewards whose size does not suit the softmax: one of them decides for good, or none can be told from nothing.
 
-use super::{Finding, Trial};
+use super::{Finding, LintTrial};
 use engine::diagnostic::printable;
 use engine::experiment::Plan;
 
@@ -43,7 +43,7 @@ pub(super) fn written(plan: &Plan, findings: &mut Vec<Finding>) {
 }
 
 /// Values that depend on the step, as the trial saw them.
-pub(super) fn observed(plan: &Plan, trial: &Trial, findings: &mut Vec<Finding>) {
+pub(super) fn observed(plan: &Plan, trial: &LintTrial, findings: &mut Vec<Finding>) {
     let outline = plan.behaviour.outline();
     for (index, text) in plan.behaviour.rules().iter().enumerate() {
         let span = outline.rules.get(index).map(|rule| rule.value_span.clone()).or_else(|| outline.reward.clone());

@@ -4,7 +4,7 @@ use super::Finding;
 use engine::experiment::Plan;
 use engine::settings::{CombineWay, LearnerKind, RecoverTo, SETTINGS};
 
-pub(super) fn check(plan: &Plan, findings: &mut Vec<Finding>) {
+pub(super) fn check_setup(plan: &Plan, findings: &mut Vec<Finding>) {
     for row in SETTINGS {
         let name = row.name();
         let Some(span) = plan.behaviour.place_of(&name) else { continue };

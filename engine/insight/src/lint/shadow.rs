@@ -6,7 +6,7 @@ use engine::experiment::Plan;
 use engine::judge::{Comparison, FactId, Reach};
 use engine::script::{Compared, Condition};
 
-pub(super) fn check(plan: &Plan, findings: &mut Vec<Finding>) {
+pub(super) fn check_shadows(plan: &Plan, findings: &mut Vec<Finding>) {
     let (outline, rules) = (plan.behaviour.outline(), plan.behaviour.rules());
     let Ok(judge) = plan.judge() else { return };
     for (index, rule) in outline.rules.iter().enumerate() {

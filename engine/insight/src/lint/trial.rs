@@ -67,7 +67,7 @@ pub(super) struct FactTrial {
 
 /// What one drive left.
 #[derive(Debug, Clone)]
-pub(super) struct Drive {
+pub(super) struct TrialDrive {
     pub run: TestRun,
     pub steps: Vec<TrialStep>,
     pub rules: Vec<RuleTrial>,
@@ -75,7 +75,7 @@ pub(super) struct Drive {
 
 /// Steps that were tried.
 #[derive(Debug, Clone)]
-pub struct Trial {
+pub struct LintTrial {
     /// All steps, drive after drive.
     pub transitions: Vec<TrialStep>,
     /// What the short learning came to.
@@ -83,7 +83,7 @@ pub struct Trial {
     pub(super) rules: Vec<RuleTrial>,
 }
 
-impl Trial {
+impl LintTrial {
     /// Drives at random and learns for a while, both at once; both end early once `stop` is set.
     ///
     /// # Errors
@@ -163,7 +163,7 @@ pub(super) fn drive(
     seed: u64,
     stop: &AtomicBool,
     choose: impl FnMut(usize) -> usize,
-) -> Result<Drive> {
+) -> Result<TrialDrive> {
     let mut plan = plan.clone();
     plan.settings.run.test_steps = steps;
     let recovers: Vec<bool> = plan.behaviour.outline().rules.iter().map(|rule| rule.recover).collect();
@@ -178,7 +178,7 @@ pub(super) fn drive(
         look(cycle, recover, &recovers, &mut rules);
     });
     let run = test_choices(&plan, seed, stop, &mut ByState(choose), &mut watch)?;
-    Ok(Drive { run, steps: kept, rules })
+    Ok(TrialDrive { run, steps: kept, rules })
 }
 
 /// Notes what every rule did in a step.
@@ -213,7 +213,7 @@ fn look<R: Robot>(cycle: &Cycle<R>, recovered: bool, recovers: &[bool], rules: &
     }
 }
 
-fn random(plan: &Plan, stop: &AtomicBool) -> Result<Drive> {
+fn random(plan: &Plan, stop: &AtomicBool) -> Result<TrialDrive> {
     let (mut random, actions) = (Random::new(SEED, Stream::Test), plan.settings.actions.len() as u32);
     drive(plan, RANDOM_STEPS, SEED, stop, |_| random.below(actions) as usize)
 }

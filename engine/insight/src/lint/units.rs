@@ -15,7 +15,7 @@ struct Allowed {
     whose: &'static str,
 }
 
-pub(super) fn check(plan: &Plan, findings: &mut Vec<Finding>) {
+pub(super) fn check_units(plan: &Plan, findings: &mut Vec<Finding>) {
     let mut seen = Vec::new();
     for compared in plan.behaviour.outline().all_comparisons() {
         let Some(allowed) = allowed(plan, compared) else { continue };

@@ -10,7 +10,7 @@ const MOST_FAILURES: f64 = 20.0;
 /// What the cheapest cheat earns, held against driving on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Verdict {
+pub enum ExploitVerdict {
     /// More: the reward can be had without getting anywhere.
     Pays,
     /// As much, as far as chance lets one tell: the reward does not say which is better.
@@ -20,11 +20,11 @@ pub enum Verdict {
 }
 
 /// Which behaviour is the cheapest cheat, and whether it pays. `largest` is the greatest reward of any step, either way.
-pub(super) fn judge(behaviours: &[Exploit], honest_per_400: f64, largest: f64) -> (Option<usize>, Verdict) {
+pub(super) fn judge(behaviours: &[Exploit], honest_per_400: f64, largest: f64) -> (Option<usize>, ExploitVerdict) {
     let earns = |exploit: &Exploit| exploit.nowhere && exploit.failures_per_1000 <= MOST_FAILURES;
     let idle = behaviours.iter().enumerate().filter(|(_, exploit)| earns(exploit));
     let Some((index, cheat)) = idle.reduce(|a, b| if b.1.reward_per_400 > a.1.reward_per_400 { b } else { a }) else {
-        return (None, Verdict::Loses);
+        return (None, ExploitVerdict::Loses);
     };
     let scale = honest_per_400.abs().max(cheat.reward_per_400.abs());
     // Less than one event in 400 steps is no difference.
@@ -32,15 +32,15 @@ pub(super) fn judge(behaviours: &[Exploit], honest_per_400: f64, largest: f64) -
     let sure = chance + largest.max(0.02 * scale);
     let more = cheat.reward_per_400 - honest_per_400;
     let verdict = match () {
-        () if more < -sure.min(0.5 * scale) => Verdict::Loses,
-        () if more > sure => Verdict::Pays,
-        () => Verdict::Equal,
+        () if more < -sure.min(0.5 * scale) => ExploitVerdict::Loses,
+        () if more > sure => ExploitVerdict::Pays,
+        () => ExploitVerdict::Equal,
     };
     (Some(index), verdict)
 }
 
 /// The verdict for a person.
-pub(super) fn sentence(cheat: Option<&Exploit>, verdict: Verdict, honest_per_400: f64) -> String {
+pub(super) fn sentence(cheat: Option<&Exploit>, verdict: ExploitVerdict, honest_per_400: f64) -> String {
     let honest = figure(honest_per_400);
     let Some(cheat) = cheat else {
         return "No cheat gets by: whatever gets nowhere here fails more than 20 times in 1,000 steps.".to_owned();
@@ -55,15 +55,15 @@ pub(super) fn sentence(cheat: Option<&Exploit>, verdict: Verdict, honest_per_400
         failures => format!("{speed} and {} failures in 1,000", figure(failures)),
     };
     match verdict {
-        Verdict::Pays => format!(
+        ExploitVerdict::Pays => format!(
             "The reward can be had without getting anywhere: '{name}' earns {earned} in 400 steps, with {cost}; driving on \
              without a failure earns {honest}."
         ),
-        Verdict::Equal => format!(
+        ExploitVerdict::Equal => format!(
             "Nothing in the reward tells '{name}' from driving on: it earns {earned} in 400 steps, with {cost}; driving on \
              without a failure earns {honest}."
         ),
-        Verdict::Loses => format!(
+        ExploitVerdict::Loses => format!(
             "No cheat pays: '{name}', the cheapest, earns {earned} in 400 steps, with {cost}; driving on without a failure \
              earns {honest}."
         ),
@@ -72,9 +72,9 @@ pub(super) fn sentence(cheat: Option<&Exploit>, verdict: Verdict, honest_per_400
 
 /// The cheapest cheat as a finding, if it earns more than driving on. Where it earns the same the sentence says so: many good
 /// rewards punish only what must not happen.
-pub(super) fn check(plan: &Plan, exploits: &Exploits, findings: &mut Vec<Finding>) {
+pub(super) fn check_exploits(plan: &Plan, exploits: &Exploits, findings: &mut Vec<Finding>) {
     let Some(cheat) = exploits.cheapest.map(|index| &exploits.behaviours[index]) else { return };
-    if exploits.verdict != Verdict::Pays || findings.iter().any(|finding| finding.code == "W-NO-CHOICE") {
+    if exploits.verdict != ExploitVerdict::Pays || findings.iter().any(|finding| finding.code == "W-NO-CHOICE") {
         return;
     }
     let outline = plan.behaviour.outline();
@@ -115,7 +115,7 @@ mod tests {
         }
     }
 
-    fn judged(behaviours: &[Exploit], honest_per_400: f64) -> (Option<usize>, Verdict, String) {
+    fn judged(behaviours: &[Exploit], honest_per_400: f64) -> (Option<usize>, ExploitVerdict, String) {
         let (cheapest, verdict) = judge(behaviours, honest_per_400, 1.0);
         (cheapest, verdict, sentence(cheapest.map(|index| &behaviours[index]), verdict, honest_per_400))
     }
@@ -129,7 +129,7 @@ mod tests {
             exploit("crash", 80.0, 20.5, true),
         ];
         let (cheapest, verdict, sentence) = judged(&all, 50.0);
-        assert_eq!((cheapest, verdict), (Some(2), Verdict::Pays));
+        assert_eq!((cheapest, verdict), (Some(2), ExploitVerdict::Pays));
         assert_eq!(
             sentence,
             "The reward can be had without getting anywhere: 'spin' earns 60 in 400 steps, with a net 0.00 m/s along the \
@@ -141,18 +141,18 @@ mod tests {
     fn less_than_one_event_is_no_difference() {
         let all = [exploit("spin", -0.96, 2.5, true)];
         let (_, verdict, sentence) = judged(&all, 0.0);
-        assert_eq!(verdict, Verdict::Loses, "half of what is at stake is much where next to nothing is");
+        assert_eq!(verdict, ExploitVerdict::Loses, "half of what is at stake is much where next to nothing is");
         assert!(sentence.starts_with("No cheat pays: 'spin', the cheapest, earns -1 in 400 steps, "), "{sentence}");
         assert!(sentence.contains("along the route and 2.5 failures in 1,000; "), "{sentence}");
-        assert_eq!(judged(&[exploit("spin", 50.5, 0.0, true)], 50.0).1, Verdict::Equal);
-        assert_eq!(judged(&[exploit("spin", 49.5, 0.0, true)], 50.0).1, Verdict::Equal);
-        assert_eq!(judged(&[exploit("spin", 48.5, 0.0, true)], 50.0).1, Verdict::Loses);
+        assert_eq!(judged(&[exploit("spin", 50.5, 0.0, true)], 50.0).1, ExploitVerdict::Equal);
+        assert_eq!(judged(&[exploit("spin", 49.5, 0.0, true)], 50.0).1, ExploitVerdict::Equal);
+        assert_eq!(judged(&[exploit("spin", 48.5, 0.0, true)], 50.0).1, ExploitVerdict::Loses);
     }
 
     #[test]
     fn where_every_cheat_fails_too_often_there_is_none() {
         let (cheapest, verdict, sentence) = judged(&[exploit("spin", 60.0, 21.0, true)], 50.0);
-        assert_eq!((cheapest, verdict), (None, Verdict::Loses));
+        assert_eq!((cheapest, verdict), (None, ExploitVerdict::Loses));
         assert!(sentence.starts_with("No cheat gets by"), "{sentence}");
     }
 }

@@ -37,7 +37,7 @@ pub fn record(plan: &Plan, seed: u64, phases: &[(Phase, &Ledger)], image_every: 
 ///
 /// # Errors
 /// If not: what to do.
-pub fn check(path: &Path) -> Result<()> {
+pub fn check_recording(path: &Path) -> Result<()> {
     if cfg!(not(feature = "mcap")) {
         let error = Diagnostic::new("E-RECORD-BUILD", "this engine was built without recording");
         return error.help("build it with: cargo build --release --features mcap").fail();
@@ -56,6 +56,6 @@ pub fn check(path: &Path) -> Result<()> {
 /// Always; how to build it with recording.
 #[cfg(not(feature = "mcap"))]
 pub fn record(_: &Plan, _: u64, _: &[(Phase, &Ledger)], _: u64, path: &Path) -> Result<Recording> {
-    check(path)?;
+    check_recording(path)?;
     Ok(Recording { steps: 0, images: 0, bytes: 0 })
 }

@@ -11,8 +11,8 @@ use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 use serde_json::json;
 
-use super::Recording;
-use super::scene::{pose, turned, update};
+use super::recording::Recording;
+use super::scene::{WORLD, pose, turned, update};
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Ledger, Phase, Plan, Playback, Snapshot, Step};
 

@@ -21,7 +21,7 @@ const MOST_HEADER_BYTES: u64 = 16 << 20;
 
 /// The run that a summary names.
 #[derive(Deserialize)]
-struct Names {
+struct NamedLog {
     log_sha256: Option<String>,
 }
 
@@ -40,7 +40,7 @@ pub(super) fn check_parts(folder: &Path, run: &SourceText) -> Result<()> {
         return Ok(());
     }
     let text = read_stored(&path)?;
-    let named = serde_json::from_str(&text.text).ok().and_then(|Names { log_sha256 }| log_sha256);
+    let named = serde_json::from_str(&text.text).ok().and_then(|NamedLog { log_sha256 }| log_sha256);
     match named {
         Some(named) if named != log_end => other(&path, &folder.join(LOG_FILE)).fail(),
         _ => Ok(()),

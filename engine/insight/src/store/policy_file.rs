@@ -19,7 +19,7 @@ pub const POLICY_FILE: &str = "policy.toml";
 const FORMAT: u32 = 2;
 
 #[derive(Deserialize)]
-struct FormatLine {
+struct PolicyFormat {
     format: u32,
 }
 
@@ -111,7 +111,7 @@ impl StoredPolicy {
     /// # Errors
     /// If the file is damaged or of another format.
     pub fn parse(source: &SourceText) -> Result<Self> {
-        let format: FormatLine = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
+        let format: PolicyFormat = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
         if format.format != FORMAT {
             let message = format!("has format {}, this engine reads format {FORMAT}", format.format);
             return Err(unfit(source, &message, "learn the behaviour again"));

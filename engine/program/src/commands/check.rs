@@ -18,7 +18,7 @@ pub(crate) fn run(arguments: &CheckArguments, console: &mut Console) -> std::res
     // A pack's filters stand in a folder that lives as long as it does.
     let Runnable { plan, unpacked: _unpacked, .. } =
         open_to_look(&arguments.behaviour, &overrides, &arguments.filters, false)?;
-    let report = lint::check(&plan)?;
+    let report = lint::check_behaviour(&plan)?;
     console.json(&report)?;
     print(console, &plan, &report)?;
     Ok(u8::from(!report.is_clean()))
@@ -52,7 +52,7 @@ fn print(console: &mut Console, plan: &Plan, report: &Report) -> std::result::Re
 
 /// Checks the behaviour of a run that is over; nothing if it was stopped.
 pub(super) fn beside_a_run(plan: &Plan, threads: usize, stop: &AtomicBool, console: &Console) -> Option<Report> {
-    lint::check_until(plan, threads, stop).unwrap_or_else(|fault| {
+    lint::check_behaviour_until(plan, threads, stop).unwrap_or_else(|fault| {
         // The run itself is done, and its results are worth keeping.
         console.note(&format!("the check ended early: {}", fault.message));
         None

@@ -18,7 +18,7 @@ use crate::cli::ExplainArguments;
 use crate::console::{Console, ConsoleError};
 
 #[derive(Serialize)]
-struct Report {
+struct StepReport {
     behaviour: String,
     world: String,
     seed: u64,
@@ -56,7 +56,7 @@ pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::r
     playback.seek(step)?;
     let stem = if arguments.test { format!("test-step-{step}") } else { format!("step-{step}") };
     let stems = [format!("{stem}-before"), format!("{stem}-after")];
-    let before = draw(plan, &playback, &format!("step {step} of {name}: what the robot saw when it chose"))?;
+    let before = draw_step(plan, &playback, &format!("step {step} of {name}: what the robot saw when it chose"))?;
     let Some(reasons) = StepReasons::of_next(&mut playback)? else {
         let message = format!("the log has {} steps of {name}, no step {step}", ledger.len());
         let error = Diagnostic::new("E-LOG-STEP", message).help("steps are counted from 0");
@@ -68,10 +68,11 @@ pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::r
         return Err(Box::new(error.help("find where it begins to differ: engine replay RUN --verify")).into());
     }
     before.write(out, &stems[0])?;
-    draw(plan, &playback, &format!("step {step} of {name}: what the robot saw at its end"))?.write(out, &stems[1])?;
+    draw_step(plan, &playback, &format!("step {step} of {name}: what the robot saw at its end"))?
+        .write(out, &stems[1])?;
     let pictures = stems.map(|stem| out.join(format!("{stem}.png")).display().to_string());
     let (behaviour, world) = (plan.behaviour.name().to_owned(), plan.layout.name.clone());
-    let report = Report { behaviour, world, seed: *seed, phase: name, reasons, pictures };
+    let report = StepReport { behaviour, world, seed: *seed, phase: name, reasons, pictures };
     console.json(&report)?;
     print(console, playback.plan(), &report)?;
     Ok(0)
@@ -92,7 +93,7 @@ fn code(code: &str, console: &mut Console) -> std::result::Result<u8, ConsoleErr
 }
 
 /// Camera, each filter, grid.
-fn draw(plan: &Plan, playback: &Playback<'_>, title: &str) -> Result<Picture> {
+fn draw_step(plan: &Plan, playback: &Playback<'_>, title: &str) -> Result<Picture> {
     let cycle = playback.cycle();
     let image = &cycle.robot().photograph().unwrap_or_else(|| cycle.observation().image.clone());
     let mut panels = vec![FramePanel::image("camera", image)];
@@ -119,9 +120,9 @@ fn draw(plan: &Plan, playback: &Playback<'_>, title: &str) -> Result<Picture> {
     })
 }
 
-fn print(console: &mut Console, plan: &Plan, report: &Report) -> std::result::Result<(), ConsoleError> {
+fn print(console: &mut Console, plan: &Plan, report: &StepReport) -> std::result::Result<(), ConsoleError> {
     let reasons = &report.reasons;
-    let Report { behaviour, world, seed, phase, .. } = report;
+    let StepReport { behaviour, world, seed, phase, .. } = report;
     console.line(&format!(
         "step {} of {phase}, {} s: {behaviour} in {world}, seed {seed}",
         reasons.step,

@@ -23,7 +23,7 @@ use crate::console::{Console, ConsoleError};
 
 /// What is told of one photograph.
 #[derive(serde::Serialize)]
-struct Seen {
+struct SeenImage {
     file: String,
     state: usize,
     /// Filled cells of each column, from the left.
@@ -60,9 +60,9 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
         let image = load_photograph(file, camera.width_px as usize, camera.height_px as usize)?;
         let state = grid.encode(chain.apply(&image).map_err(|error| failed(file, &error.message))?);
         let name = unused(file, &names);
-        draw(file, &image, &chain, &grid, state)?.write(&out, &name)?;
+        draw_photograph(file, &image, &chain, &grid, state)?.write(&out, &name)?;
         let visits = met.as_ref().map(|policy| visits(policy, state));
-        let seen = Seen {
+        let seen = SeenImage {
             file: file.display().to_string(),
             state,
             columns: columns(&grid, state),
@@ -153,7 +153,7 @@ fn unused(file: &Path, names: &[String]) -> String {
     (2..).map(|number: usize| format!("{stem}-{number}")).find(free).unwrap_or(stem)
 }
 
-fn draw(file: &Path, image: &Image, chain: &Chain, grid: &Grid, state: usize) -> Result<Picture> {
+fn draw_photograph(file: &Path, image: &Image, chain: &Chain, grid: &Grid, state: usize) -> Result<Picture> {
     let mut panels = vec![FramePanel::image("photograph", image)];
     panels.extend(chain.stages().map(|(filter, pixels)| FramePanel {
         name: filter.name,
@@ -184,7 +184,7 @@ fn columns(grid: &Grid, state: usize) -> Vec<usize> {
     (0..columns).map(|column| cells.iter().skip(column).step_by(columns).filter(|cell| **cell).count()).collect()
 }
 
-fn print(console: &mut Console, seen: &Seen) -> std::result::Result<(), ConsoleError> {
+fn print(console: &mut Console, seen: &SeenImage) -> std::result::Result<(), ConsoleError> {
     let digits: Vec<String> = seen.columns.iter().map(ToString::to_string).collect();
     let met = match seen.visits {
         None => String::new(),

@@ -29,7 +29,7 @@ const TEMPLATE: &[(&str, &str)] = &[
 pub(crate) fn run(arguments: &NewArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
     let NewCommand::Filter { name, out } = &arguments.what;
     let folder = out.clone().unwrap_or_else(|| PathBuf::from(name));
-    check(name, &folder)?;
+    check_name(name, &folder)?;
     for (path, text) in TEMPLATE {
         let path = folder.join(path);
         create_folder(path.parent().unwrap_or(&folder))?;
@@ -48,7 +48,7 @@ fn fill(text: &str, name: &str) -> String {
     text.replace("@name@", name).replace("@version@", env!("CARGO_PKG_VERSION"))
 }
 
-fn check(name: &str, folder: &Path) -> Result<()> {
+fn check_name(name: &str, folder: &Path) -> Result<()> {
     let wrong = |message: String, help: &str| Diagnostic::new("E-NEW", message).help(help).fail();
     let legal = |c: u8| c.is_ascii_lowercase() || c.is_ascii_digit() || c == b'_';
     let shown = printable(name);

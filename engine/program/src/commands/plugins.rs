@@ -16,14 +16,14 @@ pub(crate) fn run(arguments: &PluginsArguments, console: &mut Console) -> std::r
     let filters = catalogue(&arguments.filters)?;
     match &arguments.command {
         Some(PluginsCommand::Show { name }) => show(find(&filters, name)?.as_ref(), console)?,
-        Some(PluginsCommand::Check { name }) => check(find(&filters, name)?.as_ref(), console)?,
+        Some(PluginsCommand::Check { name }) => check_filter(find(&filters, name)?.as_ref(), console)?,
         None => list(&filters, console)?,
     }
     Ok(0)
 }
 
 /// A filter of the list, and what became of opening it.
-struct Listed<'a> {
+struct ListedFilter<'a> {
     name: &'a str,
     form: Form,
     path: Option<&'a Path>,
@@ -31,8 +31,8 @@ struct Listed<'a> {
 }
 
 fn list(filters: &Catalogue, console: &mut Console) -> std::result::Result<(), ConsoleError> {
-    let all: Vec<Listed> =
-        filters.list().map(|(name, form, path)| Listed { name, form, path, entry: filters.find(name) }).collect();
+    let all: Vec<ListedFilter> =
+        filters.list().map(|(name, form, path)| ListedFilter { name, form, path, entry: filters.find(name) }).collect();
     console.json(&all.iter().map(listed).collect::<Vec<_>>())?;
     let mut rows = vec![["NAME", "VERSION", "FORM", "READS", "WRITES", "PURPOSE"].map(str::to_owned)];
     rows.extend(all.iter().map(row));
@@ -42,7 +42,7 @@ fn list(filters: &Catalogue, console: &mut Console) -> std::result::Result<(), C
         let cells = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:width$}  "));
         console.line(&format!("{}{}", cells.collect::<String>(), row[5]))?;
     }
-    for Listed { name, path, entry, .. } in &all {
+    for ListedFilter { name, path, entry, .. } in &all {
         let Some(path) = path else { continue };
         console.line(&format!("\n{}: {}", printable(name), printable(&path.display().to_string())))?;
         match entry {
@@ -56,7 +56,7 @@ fn list(filters: &Catalogue, console: &mut Console) -> std::result::Result<(), C
     Ok(())
 }
 
-fn row(listed: &Listed) -> [String; 6] {
+fn row(listed: &ListedFilter) -> [String; 6] {
     let form = listed.form.name();
     match &listed.entry {
         Ok(entry) => {
@@ -76,7 +76,7 @@ fn find(filters: &Catalogue, name: &str) -> Result<Arc<Entry>> {
     })
 }
 
-fn check(entry: &Entry, console: &mut Console) -> std::result::Result<(), ConsoleError> {
+fn check_filter(entry: &Entry, console: &mut Console) -> std::result::Result<(), ConsoleError> {
     let frames = conformance(entry)?;
     let name = entry.descriptor.name;
     console.json(&json!({ "name": name, "form": entry.form.name(), "frames": frames, "keeps_the_law": true }))?;
@@ -119,7 +119,7 @@ fn show(entry: &Entry, console: &mut Console) -> std::result::Result<(), Console
     console.line(&format!("    {}", script(filter)))
 }
 
-fn listed(listed: &Listed) -> Value {
+fn listed(listed: &ListedFilter) -> Value {
     match &listed.entry {
         Ok(entry) => brief(entry),
         Err(error) => json!({

@@ -19,7 +19,7 @@ use crate::console::{Console, ConsoleError};
 const LISTED: usize = 20;
 
 #[derive(Serialize)]
-struct Report {
+struct ReplayReport {
     behaviour: String,
     world: String,
     seed: u64,
@@ -30,7 +30,7 @@ struct Report {
     kept: usize,
     /// Where the reward was swapped while the robot learned.
     swaps: Vec<SwapEntry>,
-    rules: Vec<RuleEntry>,
+    rules: Vec<RuleScoreEntry>,
     listed: Vec<StepEntry>,
 }
 
@@ -43,7 +43,7 @@ struct SwapEntry {
 }
 
 #[derive(Serialize)]
-struct RuleEntry {
+struct RuleScoreEntry {
     name: String,
     #[serde(flatten)]
     score: RuleScore,
@@ -92,7 +92,7 @@ pub(crate) fn run(arguments: &ReplayArguments, console: &mut Console) -> std::re
     };
     let listed = listed(arguments, ledger, name)?;
     play(plan, *seed, phase, ledger, name)?;
-    let report = Report {
+    let report = ReplayReport {
         behaviour: plan.behaviour.name().to_owned(),
         world: plan.layout.name.clone(),
         seed: *seed,
@@ -147,14 +147,14 @@ fn plan_of(plan: &Plan, phase: Phase, step: usize) -> &Plan {
     }
 }
 
-fn rules(plan: &Plan, phase: Phase, ledger: &Ledger) -> Vec<RuleEntry> {
-    let entry = |name: String| RuleEntry { name, score: RuleScore::default(), first_step: None, last_step: None };
-    let mut rules: Vec<RuleEntry> = plan.rule_names().into_iter().map(entry).collect();
+fn rules(plan: &Plan, phase: Phase, ledger: &Ledger) -> Vec<RuleScoreEntry> {
+    let entry = |name: String| RuleScoreEntry { name, score: RuleScore::default(), first_step: None, last_step: None };
+    let mut rules: Vec<RuleScoreEntry> = plan.rule_names().into_iter().map(entry).collect();
     for step in 0..ledger.len() {
         for (rule, value) in ledger.fired(step) {
             let name = &plan_of(plan, phase, step).behaviour.rules()[rule].name;
             let Some(entry) = rules.iter_mut().find(|entry| entry.name == *name) else { continue };
-            let RuleEntry { score, first_step, last_step, .. } = entry;
+            let RuleScoreEntry { score, first_step, last_step, .. } = entry;
             score.fired += 1;
             score.total += value;
             first_step.get_or_insert(step);
@@ -188,8 +188,8 @@ fn entry(plan: &Plan, ledger: &Ledger, step: usize) -> Option<StepEntry> {
     })
 }
 
-fn print(console: &mut Console, report: &Report) -> std::result::Result<(), ConsoleError> {
-    let Report { behaviour, world, seed, phase, steps, kept, .. } = report;
+fn print(console: &mut Console, report: &ReplayReport) -> std::result::Result<(), ConsoleError> {
+    let ReplayReport { behaviour, world, seed, phase, steps, kept, .. } = report;
     console.line(&format!("behaviour: {behaviour} in {world}, seed {seed}"))?;
     let of = if *steps == *kept as u64 { String::new() } else { format!(" of {steps}") };
     console.line(&format!("played:    {kept}{of} steps of {phase}; each is the recorded one, bit for bit"))?;
@@ -198,7 +198,7 @@ fn print(console: &mut Console, report: &Report) -> std::result::Result<(), Cons
     }
     console.line(&format!("{:20} {:>8} {:>10} {:>8} {:>8}", "rule", "fired", "total", "first", "last"))?;
     let step = |step: Option<usize>| step.map_or("-".to_owned(), |step| step.to_string());
-    for RuleEntry { name, score, first_step, last_step } in &report.rules {
+    for RuleScoreEntry { name, score, first_step, last_step } in &report.rules {
         console.line(&format!(
             "{:20} {:>8} {:>10} {:>8} {:>8}",
             printable(name),

@@ -22,7 +22,7 @@ use crate::console::{Console, ConsoleError};
 const SHOWN: usize = 12;
 
 #[derive(Serialize)]
-struct Report {
+struct RescoreReport {
     behaviour: String,
     script: String,
     world: String,
@@ -43,24 +43,24 @@ struct Report {
     /// States that the record visits.
     states_visited: usize,
     /// Those whose best action changes, the most visited first.
-    states_changed: Vec<StateEntry>,
+    states_changed: Vec<RescoredState>,
 }
 
 #[derive(Serialize)]
-struct StateEntry {
+struct RescoredState {
     state: usize,
     /// Which cells are filled, row by row from the top left.
     cells: Vec<bool>,
     visits: u64,
-    before: Choice,
-    after: Choice,
+    before: ChosenAction,
+    after: ChosenAction,
     /// By how much the new reward values the new action above the old one; next to nothing is a draw.
     gain: f64,
 }
 
 /// The best action of a state.
 #[derive(Serialize)]
-struct Choice {
+struct ChosenAction {
     action: usize,
     /// Forward speed, m/s, and turning speed, rad/s.
     motion: [f64; 2],
@@ -87,7 +87,7 @@ pub(crate) fn run(arguments: &RescoreArguments, console: &mut Console) -> std::r
     let rescored = rescore(&plan, &new, seed, &log.learning, arguments.passes)?;
     let states_changed = rescored.changed_states();
     let states_changed = states_changed.iter().filter_map(|state| entry(&plan, &rescored, *state).transpose());
-    let report = Report {
+    let report = RescoreReport {
         behaviour: plan.behaviour.name().to_owned(),
         script: new.behaviour.source().path.display().to_string(),
         world: plan.layout.name.clone(),
@@ -112,12 +112,12 @@ pub(crate) fn run(arguments: &RescoreArguments, console: &mut Console) -> std::r
     Ok(0)
 }
 
-fn entry(plan: &Plan, rescored: &Rescored, state: usize) -> Result<Option<StateEntry>> {
+fn entry(plan: &Plan, rescored: &Rescored, state: usize) -> Result<Option<RescoredState>> {
     let choice = |policy: &Policy| {
         let (action, value) = policy.best(state)?;
         let twist = plan.settings.actions[action];
         let motion = [twist.linear_m_per_s, twist.angular_rad_per_s];
-        Some(Choice { action, motion, value, tried: rescored.tries(state, action) })
+        Some(ChosenAction { action, motion, value, tried: rescored.tries(state, action) })
     };
     let (Some(before), Some(after)) = (choice(&rescored.policy_before), choice(&rescored.policy_after)) else {
         return Ok(None);
@@ -125,20 +125,20 @@ fn entry(plan: &Plan, rescored: &Rescored, state: usize) -> Result<Option<StateE
     let row = rescored.policy_after.rows().get(state).and_then(Option::as_ref);
     let gain = row.map_or(0.0, |row| after.value - row.values[before.action]);
     let cells = plan.grid()?.cells(state);
-    Ok(Some(StateEntry { state, cells, visits: rescored.visits(state), before, after, gain }))
+    Ok(Some(RescoredState { state, cells, visits: rescored.visits(state), before, after, gain }))
 }
 
-fn write(out: &Path, plan: &Plan, report: &Report) -> Result<()> {
+fn write(out: &Path, plan: &Plan, report: &RescoreReport) -> Result<()> {
     create_folder(out)?;
     write_json(&out.join("rescore.json"), report)?;
-    let state = |entry: &StateEntry, choice: &Choice| PolicyState {
+    let state = |entry: &RescoredState, choice: &ChosenAction| PolicyState {
         state: entry.state,
         cells: entry.cells.clone(),
         visits: entry.visits,
         best: plan.settings.actions[choice.action],
         value: choice.value,
     };
-    let change = |entry: &StateEntry| StateChange {
+    let change = |entry: &RescoredState| StateChange {
         before: state(entry, &entry.before),
         after: state(entry, &entry.after),
         tried: [entry.before.tried, entry.after.tried],
@@ -149,8 +149,13 @@ fn write(out: &Path, plan: &Plan, report: &Report) -> Result<()> {
     policy_diff(&PolicyDiffData { title: &title, rows, columns, states: &states })?.write(out, "policy-diff")
 }
 
-fn print(console: &mut Console, plan: &Plan, report: &Report, out: &Path) -> std::result::Result<(), ConsoleError> {
-    let Report { behaviour, world, seed, steps, .. } = report;
+fn print(
+    console: &mut Console,
+    plan: &Plan,
+    report: &RescoreReport,
+    out: &Path,
+) -> std::result::Result<(), ConsoleError> {
+    let RescoreReport { behaviour, world, seed, steps, .. } = report;
     console.line(&format!("{behaviour} in {world}, seed {seed}: {steps} steps under {}", printable(&report.script)))?;
     console.line(&format!("{:20} {:>15} {:>21} {:>9}", "", "fired", "total", ""))?;
     let heads = ["before", "after", "before", "after", "change"];
@@ -202,7 +207,7 @@ fn print(console: &mut Console, plan: &Plan, report: &Report, out: &Path) -> std
     console.line(&format!("results:   {}", out.display()))
 }
 
-fn print_states(console: &mut Console, plan: &Plan, report: &Report) -> std::result::Result<(), ConsoleError> {
+fn print_states(console: &mut Console, plan: &Plan, report: &RescoreReport) -> std::result::Result<(), ConsoleError> {
     let changed = &report.states_changed;
     let passes = if report.passes == 1 { String::new() } else { format!(" in {} passes of Q-learning", report.passes) };
     console.line(&format!(
@@ -216,7 +221,7 @@ fn print_states(console: &mut Console, plan: &Plan, report: &Report) -> std::res
     }
     let columns = plan.settings.grid.columns as usize;
     for entry in changed.iter().take(SHOWN) {
-        let guess = |choice: &Choice| match choice.tried {
+        let guess = |choice: &ChosenAction| match choice.tried {
             0 => "never tried there: a guess".to_owned(),
             1 => format!("tried once, value {}", short(choice.value)),
             tried => format!("tried {tried} times, value {}", short(choice.value)),

@@ -86,7 +86,7 @@ fn check_record(path: &Path, seeds: &[u64]) -> Result<()> {
         let error = Diagnostic::new("E-RECORD-SEEDS", "a recording is of one seed");
         return error.help("leave --seeds out, and choose the seed with --seed").fail();
     }
-    record::check(path)
+    record::check_recording(path)
 }
 
 fn out(arguments: &RunArguments, name: &str, seeds: &[u64]) -> PathBuf {

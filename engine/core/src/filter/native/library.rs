@@ -21,7 +21,7 @@ pub(super) fn read(path: &Path, trust: &Trust) -> Result<(Vec<u8>, String)> {
     if !trust.allows(&digest) {
         return Err(denied(path, trust, &digest));
     }
-    check(path, &bytes)?;
+    check_library(path, &bytes)?;
     Ok((bytes, digest.to_string()))
 }
 
@@ -39,7 +39,7 @@ fn denied(path: &Path, trust: &Trust, digest: &Digest) -> Box<Diagnostic> {
     Box::new(Diagnostic::new("E-NATIVE-DENIED", format!("'{shown}' {what}")).help(help))
 }
 
-fn check(path: &Path, bytes: &[u8]) -> Result<()> {
+fn check_library(path: &Path, bytes: &[u8]) -> Result<()> {
     fault(bytes).map_or(Ok(()), |(what, help)| {
         let message = format!("'{}' {what}", printable(&path.display().to_string()));
         Diagnostic::new("E-NATIVE-ABI", message).help(help).fail()
@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn a_text_is_not_a_library() {
-        let error = check(Path::new("ink.so"), b"int main() {}").err().unwrap();
+        let error = check_library(Path::new("ink.so"), b"int main() {}").err().unwrap();
         assert_eq!((error.code, error.message.as_str()), ("E-NATIVE-ABI", "'ink.so' is not a native library"));
     }
 
@@ -141,9 +141,9 @@ mod tests {
     fn a_library_that_is_no_filter_is_told_what_it_lacks() {
         // The program that runs this test is a whole file for this machine, and holds no filter.
         let program = std::fs::read(std::env::current_exe().unwrap()).unwrap();
-        let error = check(Path::new("ink.so"), &program).err().unwrap();
+        let error = check_library(Path::new("ink.so"), &program).err().unwrap();
         assert!(error.message.contains("not a filter"), "{}", error.message);
-        assert!(check(Path::new("ink.so"), &program[..program.len() / 2]).is_err());
+        assert!(check_library(Path::new("ink.so"), &program[..program.len() / 2]).is_err());
     }
 
     #[test]

@@ -16,7 +16,9 @@ use libloading::Library;
 
 use super::library;
 use crate::diagnostic::{Diagnostic, Result, printable};
-use crate::filter::described::{Described, DescribedParameter, LONGEST_TEXT_BYTES, MOST_PARAMETERS, check_frames};
+use crate::filter::described::{
+    DescribedFilter, DescribedParameter, LONGEST_TEXT_BYTES, MOST_PARAMETERS, check_frames,
+};
 use crate::filter::entry::{Entry, Form};
 use crate::filter::running::{Running, failed, refused};
 use crate::filter::trust::Trust;
@@ -42,15 +44,15 @@ pub(super) fn open(path: &Path, trust: &Trust) -> Result<Entry> {
 
 /// A plugin of a library, which stays loaded until the program ends.
 #[derive(Clone, Copy)]
-pub(super) struct Loaded(&'static RawPlugin);
+pub(super) struct LoadedLibrary(&'static RawPlugin);
 
 // SAFETY: it points at constants of a library that is never unloaded.
-unsafe impl Send for Loaded {}
+unsafe impl Send for LoadedLibrary {}
 // SAFETY: as above; the contract lets create run on many threads at once.
-unsafe impl Sync for Loaded {}
+unsafe impl Sync for LoadedLibrary {}
 
 /// Loads the bytes that were checked, not whatever stands at their path by now.
-pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded> {
+pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<LoadedLibrary> {
     let disk = |error| Box::new(Diagnostic::disk("copy the library", path, &error));
     // The folder is private to this user, so nobody else can change the copy before it is loaded.
     let folder = tempfile::tempdir().map_err(disk)?;
@@ -71,11 +73,11 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded> {
     // SAFETY: `library::read` found a symbol of this name, of the size and version of a `RawPlugin`.
     let symbol = unsafe { library.get::<*const RawPlugin>(PLUGIN_SYMBOL.as_bytes()) }.map_err(|error| wrong(&error))?;
     // SAFETY: as above; the static is constant and never unloaded.
-    Ok(Loaded(unsafe { &**symbol }))
+    Ok(LoadedLibrary(unsafe { &**symbol }))
 }
 
 /// Copies a descriptor out of the library.
-pub(super) fn describe(plugin: Loaded, path: &Path) -> Result<Described> {
+pub(super) fn describe(plugin: LoadedLibrary, path: &Path) -> Result<DescribedFilter> {
     let raw = plugin.0;
     let count = raw.parameter_count as usize;
     let functions = raw.create.is_some() && raw.process.is_some() && raw.destroy.is_some();
@@ -86,7 +88,7 @@ pub(super) fn describe(plugin: Loaded, path: &Path) -> Result<Described> {
     }
     // SAFETY: the law says that a plugin points at `parameter_count` parameters.
     let parameters = if count == 0 { &[] } else { unsafe { std::slice::from_raw_parts(raw.parameters, count) } };
-    Ok(Described {
+    Ok(DescribedFilter {
         name: text(raw.name),
         version: text(raw.version),
         licence: text(raw.licence),
@@ -134,12 +136,12 @@ unsafe impl Send for Native {}
 
 impl Native {
     /// Creates an instance.
-    pub(super) fn new(plugin: Loaded, values: &[f64]) -> std::result::Result<Self, Failure> {
+    pub(super) fn new(plugin: LoadedLibrary, values: &[f64]) -> std::result::Result<Self, Failure> {
         let (Some(create), Some(process), Some(destroy)) = (plugin.0.create, plugin.0.process, plugin.0.destroy) else {
             return Err(Failure { panicked: false, words: "it has no functions".to_owned() });
         };
         let mut instance = null_mut();
-        let mut message = Message::default();
+        let mut message = ForeignText::default();
         // SAFETY: the arguments are as the law says, and live through the call.
         let status = unsafe { create(values.as_ptr(), values.len() as u32, &raw mut instance, message.pointer()) };
         message.outcome(status)?;
@@ -159,7 +161,7 @@ impl Native {
         let from = raw(input.pixels().as_ptr().cast_mut(), input.format());
         let format = output.format();
         let to = raw(output.pixels().as_mut_ptr(), format);
-        let mut message = Message::default();
+        let mut message = ForeignText::default();
         // SAFETY: the instance is the library's own; the frames are as the law says, equal in size, and live through the
         // call. The law forbids the library to write through the pixels of its input.
         let status = unsafe { (self.process)(self.instance, &raw const from, &raw const to, message.pointer()) };
@@ -190,15 +192,15 @@ impl Drop for Native {
 }
 
 /// A buffer for what a filter has to say.
-struct Message([u8; MESSAGE_BYTES]);
+struct ForeignText([u8; MESSAGE_BYTES]);
 
-impl Default for Message {
+impl Default for ForeignText {
     fn default() -> Self {
         Self([0; MESSAGE_BYTES])
     }
 }
 
-impl Message {
+impl ForeignText {
     fn pointer(&mut self) -> *mut c_char {
         self.0.as_mut_ptr().cast()
     }

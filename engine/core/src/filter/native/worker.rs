@@ -13,7 +13,7 @@ use filter_api::{Descriptor, Frame, FrameMut};
 use super::wire::{self, Reply, Request, read_reply, write_reply, write_request};
 use super::{library, loaded};
 use crate::diagnostic::{Diagnostic, Result, printable};
-use crate::filter::described::{Described, check_frames};
+use crate::filter::described::{DescribedFilter, check_frames};
 use crate::filter::entry::{Entry, Form};
 use crate::filter::running::{Running, failed, refused};
 use crate::filter::trust::Trust;
@@ -52,7 +52,7 @@ struct Launch {
 
 impl Launch {
     /// Starts a worker, which loads the library and says what is in it.
-    fn start(&self) -> Result<(Worker, Described)> {
+    fn start(&self) -> Result<(Worker, DescribedFilter)> {
         let mut worker = Worker::spawn(self)?;
         let shown = printable(&self.path.display().to_string());
         let broken = |why: String| {

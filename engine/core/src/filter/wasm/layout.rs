@@ -2,7 +2,7 @@
 
 use filter_api::abi::ABI_VERSION;
 
-use crate::filter::described::{Described, DescribedParameter, LONGEST_TEXT_BYTES, MOST_PARAMETERS};
+use crate::filter::described::{DescribedFilter, DescribedParameter, LONGEST_TEXT_BYTES, MOST_PARAMETERS};
 
 /// Bytes of `filter_plugin`.
 pub(super) const PLUGIN_BYTES: u32 = 76;
@@ -25,7 +25,7 @@ pub(super) enum Fault {
 }
 
 /// Reads the plugin at `address`.
-pub(super) fn describe(memory: &[u8], address: u32) -> Result<Described, Fault> {
+pub(super) fn describe(memory: &[u8], address: u32) -> Result<DescribedFilter, Fault> {
     let field = |offset: u32| number(memory, address.checked_add(offset).ok_or(Fault::Outside)?);
     let text_at = |offset: u32| text(memory, address.checked_add(offset).ok_or(Fault::Outside)?);
     if field(0)? != ABI_VERSION {
@@ -40,7 +40,7 @@ pub(super) fn describe(memory: &[u8], address: u32) -> Result<Described, Fault> 
         return Err(Fault::Parameters(count));
     }
     let address_of = |index: u32| first.checked_add(index * PARAMETER_BYTES).ok_or(Fault::Outside);
-    Ok(Described {
+    Ok(DescribedFilter {
         name: text_at(16)?,
         version: text_at(24)?,
         licence: text_at(32)?,

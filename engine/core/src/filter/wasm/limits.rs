@@ -20,7 +20,7 @@ const MOST_PASSED: u64 = 2_000_000;
 ///
 /// # Errors
 /// If one is over its limit, or the module cannot be read.
-pub(super) fn check(path: &Path, bytes: &[u8]) -> diagnostic::Result<()> {
+pub(super) fn check_limits(path: &Path, bytes: &[u8]) -> diagnostic::Result<()> {
     let shown = printable(&path.display().to_string());
     let broken = |error: BinaryReaderError| damaged(&shown, error.message());
     let (mut code_bytes, mut passed) = (0, 0);

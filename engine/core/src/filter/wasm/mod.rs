@@ -20,7 +20,7 @@ mod sandbox;
 pub(super) fn open(path: &Path) -> Result<Entry> {
     let bytes = super::trust::read(path)?;
     check_form(path, &bytes)?;
-    limits::check(path, &bytes)?;
+    limits::check_limits(path, &bytes)?;
     sandbox::open(path, &bytes)
 }
 

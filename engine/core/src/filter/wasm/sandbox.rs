@@ -17,7 +17,7 @@ use super::layout::{FRAME_BYTES, Fault, PARAMETER_BYTES, PLUGIN_BYTES, describe}
 use super::limits::damaged;
 use crate::diagnostic::{Diagnostic, Result, printable};
 use crate::digest::Digest;
-use crate::filter::described::{Described, check_frames};
+use crate::filter::described::{DescribedFilter, check_frames};
 use crate::filter::entry::{Entry, Form};
 use crate::filter::running::{Running, failed, refused};
 
@@ -120,7 +120,7 @@ impl Sandbox {
         Box::new(Diagnostic::new("E-WASM-ABI", message).help(help))
     }
 
-    fn describe(&self) -> Result<Described> {
+    fn describe(&self) -> Result<DescribedFilter> {
         let mut guest = self.start()?;
         let plugin =
             guest.function::<(), u32>("engine_filter").map_err(|_| self.lacks("engine_filter", "() -> i32"))?;

@@ -53,14 +53,14 @@ struct Header {
     rules: Vec<RuleEntry>,
     /// Learning before the reward was swapped for the last time.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    earlier: Vec<LegEntry>,
+    earlier: Vec<LogLegEntry>,
     learning: PhaseEntry,
     test: PhaseEntry,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct LegEntry {
+struct LogLegEntry {
     record_bytes: usize,
     rules: Vec<RuleEntry>,
     learning: PhaseEntry,
@@ -102,7 +102,7 @@ impl RuleEntry {
 /// Never in practice: only if the header cannot be written as JSON.
 pub fn log_to_bytes(log: &RunLog, plan: &Plan, seed: u64, run: &str) -> Result<Vec<u8>> {
     let legs = plan.earlier.iter().zip(log.learning.earlier());
-    let earlier = legs.map(|(leg, records)| LegEntry {
+    let earlier = legs.map(|(leg, records)| LogLegEntry {
         record_bytes: records.shape.bytes(),
         rules: RuleEntry::all(&leg.plan),
         learning: PhaseEntry { steps: records.steps, records: records.len() },

@@ -22,7 +22,7 @@ pub fn read_log(bytes: &[u8], plan: &Plan, seed: u64, run: &str) -> Result<RunLo
     let stretches = stretches(&header, plan)?;
     check_length(&stretches, body)?;
     let (mut before, mut rest, mut legs) = ([0; DIGEST_BYTES], body, Vec::new());
-    for Stretch { name, phase, shape } in stretches {
+    for RecordStretch { name, phase, shape } in stretches {
         let bytes = phase_records(&mut rest, phase, shape.bytes(), &mut before, name)?;
         legs.push(LedgerLeg { shape, bytes, steps: phase.steps });
     }
@@ -36,14 +36,14 @@ pub fn read_log(bytes: &[u8], plan: &Plan, seed: u64, run: &str) -> Result<RunLo
 }
 
 /// Records that lie in one way, one after the other.
-struct Stretch {
+struct RecordStretch {
     name: &'static str,
     phase: PhaseEntry,
     shape: RecordShape,
 }
 
 /// Each leg of learning, then the test; every one as the plan says it must be.
-fn stretches(header: &Header, plan: &Plan) -> Result<Vec<Stretch>> {
+fn stretches(header: &Header, plan: &Plan) -> Result<Vec<RecordStretch>> {
     let stretch = |name, plan: &Plan, rules: &[RuleEntry], record_bytes: usize, phase: PhaseEntry| {
         let shape = RecordShape::of(plan);
         let is_fixed = |value: &Option<f64>| value.is_some();
@@ -51,7 +51,7 @@ fn stretches(header: &Header, plan: &Plan) -> Result<Vec<Stretch>> {
         if record_bytes != shape.bytes() || !written.eq(shape.values().iter().map(is_fixed)) {
             return Err(Box::new(damaged("the log's records do not fit the rules of its run".to_owned())));
         }
-        Ok(Stretch { name, phase, shape })
+        Ok(RecordStretch { name, phase, shape })
     };
     let legs = || header.earlier.iter().zip(&plan.earlier);
     let counts_fit = legs().all(|(entry, leg)| entry.learning.steps == leg.steps);
@@ -109,10 +109,10 @@ fn phase_bytes(phase: PhaseEntry, record_bytes: usize) -> Option<usize> {
     possible.then_some(phase.records)?.checked_mul(record_bytes)?.checked_add(digests)
 }
 
-fn check_length(stretches: &[Stretch], body: &[u8]) -> Result<()> {
-    let wanted = stretches
-        .iter()
-        .try_fold(0_usize, |sum, Stretch { phase, shape, .. }| sum.checked_add(phase_bytes(*phase, shape.bytes())?));
+fn check_length(stretches: &[RecordStretch], body: &[u8]) -> Result<()> {
+    let wanted = stretches.iter().try_fold(0_usize, |sum, RecordStretch { phase, shape, .. }| {
+        sum.checked_add(phase_bytes(*phase, shape.bytes())?)
+    });
     let Some(wanted) = wanted else {
         return damaged("the log's header counts more steps than a log can hold".to_owned()).fail();
     };

@@ -16,7 +16,7 @@ const IMAGES: [[u64; 2]; 4] = [[80, 60], [160, 120], [320, 240], [640, 480]];
 
 /// One workload.
 #[derive(serde::Serialize)]
-pub(super) struct Row {
+pub(super) struct GrowthRow {
     pub(super) what: &'static str,
     pub(super) amount: String,
     /// Microseconds of a whole step; with several threads, of all their steps together.
@@ -31,7 +31,7 @@ pub(super) struct Row {
 ///
 /// # Errors
 /// If the behaviour cannot be run with one of them.
-pub(super) fn measure(plan: &Plan) -> Result<Vec<Row>> {
+pub(super) fn measure(plan: &Plan) -> Result<Vec<GrowthRow>> {
     let boxes = |count: &usize| Ok((count.to_string(), with_boxes(plan, *count)?));
     let states = |[rows, columns]: &[u64; 2]| {
         let plan = with_settings(plan, &[("grid.rows", *rows), ("grid.columns", *columns)])?;
@@ -52,9 +52,9 @@ pub(super) fn measure(plan: &Plan) -> Result<Vec<Row>> {
 ///
 /// # Errors
 /// If a file cannot be written.
-pub(super) fn draw(behaviour: &str, rows: &[Row], folder: &Path) -> Result<()> {
+pub(super) fn draw_growth(behaviour: &str, rows: &[GrowthRow], folder: &Path) -> Result<()> {
     std::fs::create_dir_all(folder).map_err(|error| Diagnostic::disk("create", folder, &error))?;
-    let kinds: Vec<&[Row]> = rows.chunk_by(|a, b| a.what == b.what).collect();
+    let kinds: Vec<&[GrowthRow]> = rows.chunk_by(|a, b| a.what == b.what).collect();
     let bars: Vec<Vec<(&str, f64)>> =
         kinds.iter().map(|rows| rows.iter().map(|row| (row.amount.as_str(), row.step_us)).collect()).collect();
     let groups: Vec<GrowthGroup<'_>> =
@@ -62,25 +62,25 @@ pub(super) fn draw(behaviour: &str, rows: &[Row], folder: &Path) -> Result<()> {
     growth(&format!("A step of '{behaviour}' as its world and its image grow"), &groups)?.write(folder, "growth")
 }
 
-fn kind(what: &'static str, plans: Vec<(String, Plan)>) -> Result<Vec<Row>> {
+fn kind(what: &'static str, plans: Vec<(String, Plan)>) -> Result<Vec<GrowthRow>> {
     let times = step_us(&plans.iter().map(|(_, plan)| (plan, 1)).collect::<Vec<_>>())?;
     let mut rows = Vec::with_capacity(plans.len());
     for ((amount, plan), time) in plans.into_iter().zip(&times) {
         let stages = stages(&plan, plan.settings.run.steps)?;
         let us = |name: &str| stages.iter().find(|stage| stage.name == name).map(|stage| stage.us);
         let (camera_us, laser_us) = (us("camera"), us("laser"));
-        rows.push(Row { what, amount, step_us: *time, ratio: time / times[0], camera_us, laser_us });
+        rows.push(GrowthRow { what, amount, step_us: *time, ratio: time / times[0], camera_us, laser_us });
     }
     Ok(rows)
 }
 
-fn threads(plan: &Plan) -> Result<Vec<Row>> {
+fn threads(plan: &Plan) -> Result<Vec<GrowthRow>> {
     let counts = if super::cores() == 1 { vec![1] } else { vec![1, 2] };
     let times = step_us(&counts.iter().map(|count| (plan, *count)).collect::<Vec<_>>())?;
     let row = |(count, time): (&usize, &f64)| {
         let step_us = time / *count as f64;
         let (what, amount) = ("threads", count.to_string());
-        Row { what, amount, step_us, ratio: step_us / times[0], camera_us: None, laser_us: None }
+        GrowthRow { what, amount, step_us, ratio: step_us / times[0], camera_us: None, laser_us: None }
     };
     Ok(counts.iter().zip(&times).map(row).collect())
 }

@@ -12,12 +12,12 @@ use engine::diagnostic::Result;
 use engine::experiment::{Ledger, Plan, learn_into};
 
 use self::clock::StageTime;
-use self::growth::Row;
+use self::growth::GrowthRow;
 use crate::cli::BenchArguments;
 use crate::console::{Console, ConsoleError};
 
 #[derive(serde::Serialize)]
-struct Report {
+struct BenchReport {
     behaviour: String,
     world: String,
     image: [u64; 2],
@@ -33,7 +33,7 @@ struct Report {
     empty_step_us: f64,
     /// How many copies of one colour frame a step takes.
     step_in_copies: f64,
-    growth: Option<Vec<Row>>,
+    growth: Option<Vec<GrowthRow>>,
 }
 
 pub(crate) fn run(arguments: &BenchArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
@@ -47,7 +47,7 @@ pub(crate) fn run(arguments: &BenchArguments, console: &mut Console) -> std::res
     }
     let report = measure(&plan, arguments)?;
     if let (Some(folder), Some(rows)) = (&arguments.out, &report.growth) {
-        growth::draw(&report.behaviour, rows, folder)?;
+        growth::draw_growth(&report.behaviour, rows, folder)?;
     }
     console.json(&report)?;
     print(console, &report)?;
@@ -58,13 +58,13 @@ fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-fn measure(plan: &Plan, arguments: &BenchArguments) -> Result<Report> {
+fn measure(plan: &Plan, arguments: &BenchArguments) -> Result<BenchReport> {
     let cores = cores();
     let times = clock::step_us(&[(plan, 1), (plan, cores)])?;
     let (one_us, all_us) = (times[0], times[1] / cores as f64);
     let camera = &plan.settings.camera;
     let copy_us = clock::copy_us(plan, arguments.steps);
-    Ok(Report {
+    Ok(BenchReport {
         behaviour: plan.behaviour.name().to_owned(),
         world: plan.layout.name.clone(),
         image: [camera.width_px, camera.height_px],
@@ -83,7 +83,7 @@ fn measure(plan: &Plan, arguments: &BenchArguments) -> Result<Report> {
     })
 }
 
-fn print(console: &mut Console, report: &Report) -> std::result::Result<(), ConsoleError> {
+fn print(console: &mut Console, report: &BenchReport) -> std::result::Result<(), ConsoleError> {
     let [width, height] = report.image;
     let textured = if report.textured { ", textured" } else { "" };
     console.line(&format!(
@@ -108,11 +108,11 @@ fn print(console: &mut Console, report: &Report) -> std::result::Result<(), Cons
     report.growth.as_ref().map_or(Ok(()), |rows| print_growth(console, rows))
 }
 
-fn print_growth(console: &mut Console, rows: &[Row]) -> std::result::Result<(), ConsoleError> {
+fn print_growth(console: &mut Console, rows: &[GrowthRow]) -> std::result::Result<(), ConsoleError> {
     console.line("\n| what | amount | whole step, us | times the first | camera, us | laser, us |")?;
     console.line("|---|---|---|---|---|---|")?;
     let shown = |us: Option<f64>| us.map_or("–".to_owned(), |us| format!("{us:.2}"));
-    for Row { what, amount, step_us, ratio, camera_us, laser_us } in rows {
+    for GrowthRow { what, amount, step_us, ratio, camera_us, laser_us } in rows {
         let (camera, laser) = (shown(*camera_us), shown(*laser_us));
         console.line(&format!("| {what} | {amount} | {step_us:.2} | {ratio:.2} | {camera} | {laser} |"))?;
     }

@@ -42,7 +42,7 @@ pub(crate) const STAGES: [Stage; 8] = [
 /// Everything that a step needs, with situations to use it on.
 pub(crate) struct Stages {
     plan: Plan,
-    samples: Vec<Sample>,
+    samples: Vec<Situation>,
     world: World,
     camera: Camera,
     laser: Laser,
@@ -59,7 +59,7 @@ pub(crate) struct Stages {
     failure: Option<Box<Diagnostic>>,
 }
 
-struct Sample {
+struct Situation {
     pose: Pose,
     body: Isometry3,
     image: Image,
@@ -160,7 +160,7 @@ impl Stages {
     }
 }
 
-fn record(plan: &Plan) -> Result<Vec<Sample>> {
+fn record(plan: &Plan) -> Result<Vec<Situation>> {
     let mut cycle = Cycle::new(plan, SimulatedRobot::new(&plan.layout, &plan.settings, 1)?)?;
     let mut random = Random::new(1, Stream::Test);
     let mut samples = Vec::with_capacity(SAMPLES);
@@ -168,7 +168,7 @@ fn record(plan: &Plan) -> Result<Vec<Sample>> {
         let step = cycle.step(random.below(plan.settings.actions.len() as u32) as usize)?;
         if index % SPACING == 0 {
             let body = cycle.robot().world().body(0);
-            samples.push(Sample {
+            samples.push(Situation {
                 pose: body.pose,
                 body: body.world_from_robot(),
                 image: cycle.observation().image.clone(),

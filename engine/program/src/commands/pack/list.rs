@@ -15,7 +15,7 @@ use crate::cli::{ListArguments, RemoveArguments};
 use crate::console::{Console, ConsoleError};
 
 /// A pack of the list.
-struct Listed {
+struct ListedPack {
     pack: Pack,
     signature: Option<Signature>,
 }
@@ -29,7 +29,7 @@ pub(super) fn list(arguments: &ListArguments, console: &mut Console) -> std::res
     let trust = places.trust()?;
     let mut rows = Vec::new();
     let mut cards = Vec::new();
-    for Listed { pack, signature } in &listed {
+    for ListedPack { pack, signature } in &listed {
         let signed = signature_line(&trust, pack, signature.as_ref());
         let manifest = pack.manifest();
         rows.push(json!({
@@ -52,15 +52,17 @@ pub(super) fn list(arguments: &ListArguments, console: &mut Console) -> std::res
     Ok(0)
 }
 
-fn in_folder(folder: &Path) -> Result<Vec<Listed>> {
+fn in_folder(folder: &Path) -> Result<Vec<ListedPack>> {
     let offers = offers_in(folder)?;
-    let listed = |path: &Path| load(path).map(|fetched| Listed { pack: fetched.pack, signature: fetched.signature });
+    let listed =
+        |path: &Path| load(path).map(|fetched| ListedPack { pack: fetched.pack, signature: fetched.signature });
     offers.iter().map(|(path, _)| listed(path)).collect()
 }
 
-fn installed(places: &Places) -> Result<Vec<Listed>> {
+fn installed(places: &Places) -> Result<Vec<ListedPack>> {
     let shelf = places.shelf();
-    let listed = |locked: &Locked| Ok(Listed { pack: shelf.get(locked)?, signature: shelf.signature(locked.content)? });
+    let listed =
+        |locked: &Locked| Ok(ListedPack { pack: shelf.get(locked)?, signature: shelf.signature(locked.content)? });
     places.index()?.packs().iter().map(listed).collect()
 }
 

@@ -37,11 +37,11 @@ pub(super) fn new(arguments: &PackNewArguments, console: &mut Console) -> Result
     Ok(0)
 }
 
-pub(super) fn check(arguments: &FolderArguments, console: &mut Console) -> Result<u8, ConsoleError> {
+pub(super) fn check_folder(arguments: &FolderArguments, console: &mut Console) -> Result<u8, ConsoleError> {
     let folder = &arguments.folder;
     let pack = draft(folder)?;
     let (depends, stop) = (depends(&pack)?, on_ctrl_c()?);
-    let findings = pack::check(folder, &depends, sources(&arguments.filters)?, &stop, &|_| ())?;
+    let findings = pack::check_pack(folder, &depends, sources(&arguments.filters)?, &stop, &|_| ())?;
     console.json(&json!({ "name": pack.manifest().name, "findings": findings }))?;
     for finding in &findings {
         console.line(&format!("{:12} {}", format!("{}:", finding.about), finding.text))?;

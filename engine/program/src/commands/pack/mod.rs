@@ -18,7 +18,7 @@ use crate::console::{Console, ConsoleError};
 pub(crate) fn run(arguments: &PackArguments, console: &mut Console) -> Result<u8, ConsoleError> {
     match &arguments.command {
         PackCommand::New(arguments) => make::new(arguments, console),
-        PackCommand::Check(arguments) => make::check(arguments, console),
+        PackCommand::Check(arguments) => make::check_folder(arguments, console),
         PackCommand::Build(arguments) => make::build(arguments, console),
         PackCommand::Keygen(arguments) => keys::keygen(arguments, console),
         PackCommand::Sign(arguments) => keys::sign(arguments, console),
