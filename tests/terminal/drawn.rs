@@ -1,9 +1,9 @@
+use crossterm::event::KeyCode;
 use engine::diagnostic::SourceText;
 use engine::experiment::Leg;
 use engine::learner::Carry;
 use engine::script::Behaviour;
-use ratatui::crossterm::event::KeyCode;
-use ratatui::style::{Color, Modifier};
+use ratatui_core::style::{Color, Modifier};
 use watch::Board;
 use watch::terminal::{Ink, Panel, View};
 

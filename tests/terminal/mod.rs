@@ -13,8 +13,8 @@ use engine::experiment::{Ledger, Overrides, Plan, learn_into, test_and_watch};
 use engine::script::Behaviour;
 use engine::world::Layout;
 use insight::page::{Document, Moments};
-use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui_core::buffer::Buffer;
+use ratatui_core::layout::Rect;
 use watch::terminal::{Ink, View, draw};
 use watch::{Board, SavedRun, WatchedSeed};
 

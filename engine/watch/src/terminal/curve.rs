@@ -1,8 +1,8 @@
 //! The learning curve: the median of all seeds in its band, the shown seed, the median of the save before behind them.
 
-use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
-use ratatui::text::{Line, Span};
+use ratatui_core::buffer::Buffer;
+use ratatui_core::layout::Rect;
+use ratatui_core::text::{Line, Span};
 
 use super::dots::{Dot, Dots, Rank};
 use super::ink::Ink;

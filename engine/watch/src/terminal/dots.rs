@@ -1,8 +1,8 @@
 //! A drawing of dots, two by four in each cell of the terminal, so that one metre is as long in x as in y.
 
-use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
-use ratatui::style::Style;
+use ratatui_core::buffer::Buffer;
+use ratatui_core::layout::Rect;
+use ratatui_core::style::Style;
 
 /// Beyond so many dots nothing is drawn.
 const FAR: f64 = 20_000.0;

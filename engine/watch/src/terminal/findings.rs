@@ -1,9 +1,9 @@
 //! What the lint found, and the mistake of a bad save with the writer's own line.
 
-use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
-use ratatui::style::Style;
-use ratatui::text::{Line, Span};
+use ratatui_core::buffer::Buffer;
+use ratatui_core::layout::Rect;
+use ratatui_core::style::Style;
+use ratatui_core::text::{Line, Span};
 
 use super::ink::Ink;
 use super::screen::{heading, nothing, write_all};

@@ -1,8 +1,8 @@
 //! What stands above and below the panels: which run, how it went, which step, the page's address, keys.
 
-use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
-use ratatui::text::{Line, Span};
+use ratatui_core::buffer::Buffer;
+use ratatui_core::layout::Rect;
+use ratatui_core::text::{Line, Span};
 
 use super::ink::Ink;
 use super::keys::KEYS;

@@ -2,7 +2,7 @@
 
 use std::env::var_os;
 
-use ratatui::style::{Color, Modifier, Style};
+use ratatui_core::style::{Color, Modifier, Style};
 
 use insight::page::RuleView;
 

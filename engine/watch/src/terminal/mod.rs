@@ -4,7 +4,7 @@
 //!   board.rs --> view.rs (what is shown, where the reader stands) <-- keys.rs
 //!                  |     ^ scans and reasons of the shown step
 //!                  v     +--- player.rs (one thread, plays steps again)
-//!                screen.rs --> world.rs, curve.rs, rules.rs, step.rs, findings.rs, foot.rs --> the terminal
+//!                screen.rs --> world.rs, curve.rs, rules.rs, step.rs, findings.rs, foot.rs --> tty.rs
 //! ```
 //!
 //! Drawing is a pure function from a [`View`] to a buffer of characters ([`draw`]). Every text of a script or a world goes
@@ -21,18 +21,17 @@ mod rules;
 mod screen;
 mod step;
 mod story;
+mod tty;
 mod view;
 mod words;
 mod world;
 
 use std::io::IsTerminal;
-use std::mem::ManuallyDrop;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use ratatui::DefaultTerminal;
-use ratatui::crossterm::event::{self, Event};
+use crossterm::event::{self, Event};
 
 pub use ink::Ink;
 pub use keys::Wish;
@@ -44,6 +43,7 @@ use super::board::Board;
 use super::relearn::Asker;
 use engine::diagnostic::{Diagnostic, Result};
 use player::Player;
+use tty::Tty;
 
 /// From one drawing to the next while playing.
 const FRAME: Duration = Duration::from_millis(40);
@@ -68,44 +68,19 @@ pub fn require() -> Result<()> {
     if std::io::stdout().is_terminal() { Ok(()) } else { Err(no_terminal("standard output")) }
 }
 
-/// The terminal while it is ours; given back however this ends.
-struct Screen {
-    /// Never dropped, since it writes of its own failure to standard error, which a closed terminal takes along.
-    terminal: ManuallyDrop<DefaultTerminal>,
-}
-
-impl Screen {
-    fn open() -> Result<Self> {
-        let terminal = ratatui::try_init().map_err(|error| failed(&error))?;
-        Ok(Self { terminal: ManuallyDrop::new(terminal) })
-    }
-
-    fn draw(&mut self, view: &View) -> Result<()> {
-        let drawn = self.terminal.draw(|frame| draw(view, frame.area(), frame.buffer_mut()));
-        drawn.map(drop).map_err(|error| failed(&error))
-    }
-}
-
-impl Drop for Screen {
-    fn drop(&mut self) {
-        // Nobody is left to be told.
-        let _ = ratatui::try_restore();
-        let _ = self.terminal.show_cursor();
-    }
-}
-
 /// Shows the board until a key ends it or `stop` is set; sets `stop` at its own end.
 ///
 /// # Errors
 /// If the terminal cannot be drawn on or read from; it is restored all the same.
 pub fn show(board: &Board, asker: &Asker, address: &str, stop: &Arc<AtomicBool>) -> Result<()> {
     end_on_signals(stop);
-    let result = Screen::open().and_then(|mut screen| follow(&mut screen, board, asker, address, stop));
+    let result =
+        Tty::open().map_err(|error| failed(&error)).and_then(|mut tty| follow(&mut tty, board, asker, address, stop));
     stop.store(true, Ordering::Relaxed);
     result
 }
 
-fn follow(screen: &mut Screen, board: &Board, asker: &Asker, address: &str, stop: &AtomicBool) -> Result<()> {
+fn follow(tty: &mut Tty, board: &Board, asker: &Asker, address: &str, stop: &AtomicBool) -> Result<()> {
     let (mut view, player) = (View::new(address, Ink::of_environment()), Player::start());
     let (mut last, mut stale) = (Instant::now(), true);
     while !stop.load(Ordering::Relaxed) {
@@ -126,7 +101,7 @@ fn follow(screen: &mut Screen, board: &Board, asker: &Asker, address: &str, stop
             {
                 view.take(answer);
             }
-            screen.draw(&view)?;
+            tty.draw(|area, buffer| draw(&view, area, buffer)).map_err(|error| failed(&error))?;
             stale = false;
         }
         let wait = if view.is_playing() { FRAME.saturating_sub(last.elapsed()) } else { GLANCE };
@@ -141,7 +116,7 @@ fn follow(screen: &mut Screen, board: &Board, asker: &Asker, address: &str, stop
                 match view.key(key) {
                     Wish::Quit => return Ok(()),
                     Wish::Again => asker.again(),
-                    Wish::Clear => screen.terminal.clear().map_err(|error| failed(&error))?,
+                    Wish::Clear => tty.forget(),
                     Wish::Nothing => {}
                 }
             }

@@ -1,9 +1,9 @@
 //! The rules: what each adds, how often it fired, and when; those that fire in the shown step are lit.
 
-use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
-use ratatui::style::{Modifier, Style};
-use ratatui::text::{Line, Span};
+use ratatui_core::buffer::Buffer;
+use ratatui_core::layout::Rect;
+use ratatui_core::style::{Modifier, Style};
+use ratatui_core::text::{Line, Span};
 
 use super::ink::Ink;
 use super::screen::{heading, write, write_all};

@@ -1,13 +1,13 @@
 //! The whole screen: what stands where, at which size.
 
-use ratatui::buffer::Buffer;
-use ratatui::layout::{Alignment, Rect};
-use ratatui::text::{Line, Span};
-use ratatui::widgets::{Paragraph, Widget, Wrap};
+use ratatui_core::buffer::Buffer;
+use ratatui_core::layout::Rect;
+use ratatui_core::text::{Line, Span};
+use ratatui_core::widgets::Widget;
 
 use super::ink::Ink;
 use super::view::{Panel, View};
-use super::words::{columns, fit};
+use super::words::{columns, fit, lines};
 use super::{curve, findings, foot, rules, step, world};
 
 /// Below this there is no room for anything but words.
@@ -22,7 +22,9 @@ pub fn draw(view: &View, area: Rect, buffer: &mut Buffer) {
             "{} x {} is too small: make the window {} x {} or larger; q quits",
             area.width, area.height, LEAST.0, LEAST.1
         );
-        Paragraph::new(words).wrap(Wrap { trim: true }).render(area, buffer);
+        for (row, line) in area.rows().zip(lines(&words, usize::from(area.width))) {
+            write(&Line::raw(line), row, buffer);
+        }
         return;
     }
     let [head, body, below] = rows(area, [2, 0, 2]);
@@ -36,7 +38,7 @@ pub fn draw(view: &View, area: Rect, buffer: &mut Buffer) {
         } else {
             let words = if view.shown.text.is_empty() { "reading the behaviour" } else { &view.shown.text };
             let middle = Rect { y: body.y + body.height / 2, height: 1, ..body };
-            Paragraph::new(fit(words, usize::from(body.width))).alignment(Alignment::Center).render(middle, buffer);
+            write(&Line::raw(fit(words, usize::from(body.width))).centered(), middle, buffer);
         }
     } else {
         panels(view, body, buffer);

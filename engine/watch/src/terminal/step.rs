@@ -1,9 +1,9 @@
 //! The shown step: state, action, the nearest thing, and what each rule said of it.
 
-use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
-use ratatui::style::Style;
-use ratatui::text::{Line, Span};
+use ratatui_core::buffer::Buffer;
+use ratatui_core::layout::Rect;
+use ratatui_core::style::Style;
+use ratatui_core::text::{Line, Span};
 
 use super::ink::Ink;
 use super::screen::{heading, nothing, write, write_all};

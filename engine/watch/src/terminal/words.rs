@@ -1,6 +1,6 @@
 //! Numbers and texts as the page writes them, safe for a terminal and cut to a width.
 
-use ratatui::text::Span;
+use ratatui_core::text::Span;
 
 use engine::diagnostic::printable;
 use insight::words::{typeset, whole};

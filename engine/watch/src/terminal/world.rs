@@ -2,10 +2,10 @@
 
 use std::f64::consts::PI;
 
-use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
-use ratatui::style::{Modifier, Style};
-use ratatui::text::Span;
+use ratatui_core::buffer::Buffer;
+use ratatui_core::layout::Rect;
+use ratatui_core::style::{Modifier, Style};
+use ratatui_core::text::Span;
 
 use super::dots::{Dot, Dots, Rank};
 use super::ink::Ink;
