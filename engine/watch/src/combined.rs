@@ -1,4 +1,4 @@
-//! A behaviour that combines learned policies: each save tests the combination again. Nothing is learned, so that a run
+//! A behaviour that combines learned policies: each save tests the combination desk. Nothing is learned, so that a run
 //! has no curve and no table of its own.
 
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -6,9 +6,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 use super::board::WatchedSeed;
+use super::desk::Desk;
 use super::files::Files;
 use super::findings;
-use super::relearn::Relearner;
 use super::session::MOST_LEDGER_BYTES;
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Decider, Learned, Ledger, Plan, RecordShape, Tally, Trail, in_parallel};
@@ -16,8 +16,8 @@ use engine::learner::Policy;
 use insight::store::{policy_files, with_policies};
 
 /// Tests the combination with all seeds and shows it; its policies are watched from then on.
-pub(super) fn retest(again: &Relearner, plan: Plan, stop: &AtomicBool, files: &Mutex<Files>) -> Result<()> {
-    if again.settings.finished.is_some() {
+pub(super) fn retest(desk: &Desk, plan: Plan, stop: &AtomicBool, files: &Mutex<Files>) -> Result<()> {
+    if desk.settings.finished.is_some() {
         let message = "this behaviour combines learned policies: nothing is learned that could be kept or written";
         let error = Diagnostic::new("E-WATCH-POLICIES", message);
         return error.help("leave out --keep and --out; engine run SCRIPT writes the folder of such a test").fail();
@@ -25,19 +25,19 @@ pub(super) fn retest(again: &Relearner, plan: Plan, stop: &AtomicBool, files: &M
     let started = Instant::now();
     files.lock().unwrap_or_else(PoisonError::into_inner).watch(policy_files(&plan))?;
     let plan = with_policies(plan)?;
-    let seeds = &again.settings.seeds;
+    let seeds = &desk.settings.seeds;
     let count = if seeds.len() == 1 { "one seed".to_owned() } else { format!("{} seeds", seeds.len()) };
     let steps = plan.settings.run.test_steps;
-    again.board.working(&format!("testing {} policies as one, {count}, {steps} steps each", plan.members.len()));
+    desk.board.working(&format!("testing {} policies as one, {count}, {steps} steps each", plan.members.len()));
     let room = MOST_LEDGER_BYTES / (seeds.len() * RecordShape::of(&plan).bytes()).max(1) as u64;
-    let tested = in_parallel(seeds, again.settings.threads, |seed| test(&plan, seed, room, stop))?;
+    let tested = in_parallel(seeds, desk.settings.threads, |seed| test(&plan, seed, room, stop))?;
     if stop.load(Ordering::Relaxed) {
         return Ok(());
     }
     let tested_s = started.elapsed().as_secs_f64();
-    let text = format!("save {}: combined policies tested in {tested_s:.2} s", again.save);
-    let run = again.show(plan, tested, true, &text, None)?;
-    findings::tell(&again.board, &run, again.settings.threads, stop);
+    let text = format!("save {}: combined policies tested in {tested_s:.2} s", desk.save);
+    let run = desk.show(plan, tested, true, &text, None)?;
+    findings::tell(&desk.board, &run, desk.settings.threads, stop);
     Ok(())
 }
 

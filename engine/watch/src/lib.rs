@@ -15,6 +15,7 @@
 
 mod board;
 mod combined;
+mod desk;
 mod files;
 mod findings;
 mod guard;
@@ -26,5 +27,6 @@ mod socket;
 pub mod terminal;
 
 pub use board::{Board, SavedRun, Shown, ShownRun, WatchedSeed};
-pub use relearn::{Asker, Finished, Relearner, WatchSettings};
+pub use desk::{Finished, WatchSettings};
+pub use relearn::{Asker, Relearner};
 pub use server::{Address, listen};

@@ -1,21 +1,18 @@
 //! Learns again after each save, with all seeds: from nothing, and a newer save ends the older run; or, where what was
 //! learned is to be kept, on from there under the new reward.
 
-use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::board::{Board, SavedRun, WatchedSeed};
+use super::desk::{Desk, WatchSettings};
 use super::files::{Files, SETTLE};
 use super::session::Session;
 use super::{combined, findings};
 use engine::diagnostic::{Diagnostic, Result};
-use engine::experiment::{Ledger, Overrides, Plan, TestRun, WINDOW_STEPS, in_parallel, test_and_watch};
-use engine::filter::Catalogue;
-use engine::learner::Carry;
-use insight::page::{Document, Moments};
+use engine::experiment::{Ledger, Plan, TestRun, WINDOW_STEPS, in_parallel, test_and_watch};
 
 /// A save is often several writes; so long it must be quiet.
 const QUIET: Duration = Duration::from_millis(15);
@@ -23,29 +20,6 @@ const QUIET: Duration = Duration::from_millis(15);
 const GLANCE: Duration = Duration::from_millis(100);
 /// How often a run that is being learned is shown.
 const SHOWN_EVERY: Duration = Duration::from_secs(1);
-
-/// Called with every run that was learned and tested, its tests, and the seconds that both took.
-pub type Finished = Box<dyn Fn(&SavedRun, Vec<TestRun>, f64) -> Result<()> + Send>;
-
-/// What is watched and how it is learned.
-pub struct WatchSettings {
-    /// The script.
-    pub behaviour: PathBuf,
-    /// The seeds.
-    pub seeds: Vec<u64>,
-    /// Threads to learn with; 0 is one for each core.
-    pub threads: usize,
-    /// Whether a save that changes only the reward goes on with what was learned, and what becomes of the table then.
-    pub keep: Option<Carry>,
-    /// What is done with finished runs.
-    pub finished: Option<Finished>,
-    /// What the command line changes.
-    pub overrides: Overrides,
-    /// Folders of filters.
-    pub filter_folders: Vec<PathBuf>,
-    /// Makes the catalogue of filters anew, since a filter may have been saved.
-    pub filters: Box<dyn Fn() -> Result<Arc<Catalogue>> + Send>,
-}
 
 /// Why a run is asked for.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -82,11 +56,9 @@ impl Asker {
 
 /// Learns after each save, on the thread that calls [`Relearner::serve`].
 pub struct Relearner {
-    pub(super) settings: WatchSettings,
-    pub(super) board: Arc<Board>,
+    desk: Desk,
     asker: Asker,
     asked: Receiver<Why>,
-    pub(super) save: u64,
     /// What goes on with the next save.
     session: Option<Session>,
 }
@@ -97,7 +69,7 @@ impl Relearner {
     pub fn new(settings: WatchSettings, board: Arc<Board>) -> Self {
         let (sender, asked) = channel();
         let asker = Asker { sender, running: Arc::default() };
-        Self { settings, board, asker, asked, save: 0, session: None }
+        Self { desk: Desk { settings, board, save: 0 }, asker, asked, session: None }
     }
 
     /// Asks for runs from elsewhere.
@@ -116,8 +88,8 @@ impl Relearner {
         let mut files = Files::new(move || {
             let _ = saves.send(());
         })?;
-        files.watch([self.settings.behaviour.clone()])?;
-        files.watch_filters(&self.settings.filter_folders)?;
+        files.watch([self.desk.settings.behaviour.clone()])?;
+        files.watch_filters(&self.desk.settings.filter_folders)?;
         let files = Arc::new(Mutex::new(files));
         std::thread::scope(|scope| {
             let (watched, asker) = (Arc::clone(&files), self.asker());
@@ -139,11 +111,11 @@ impl Relearner {
         let wanted = self.asked.try_iter().fold(why, |all, why| if why == Why::Wanted { why } else { all });
         let flag = Arc::new(AtomicBool::new(false));
         *self.asker.running.lock().unwrap_or_else(PoisonError::into_inner) = Arc::clone(&flag);
-        self.save += 1;
+        self.desk.save += 1;
         if let Err(error) = self.relearn(wanted, &flag, files)
             && !flag.load(Ordering::Relaxed)
         {
-            self.board.failed(&error);
+            self.desk.board.failed(&error);
         }
     }
 
@@ -151,7 +123,7 @@ impl Relearner {
         let plan = self.plan(files);
         if plan.as_ref().is_ok_and(|plan| !plan.learns()) {
             self.session = None;
-            return combined::retest(self, plan?, stop, files);
+            return combined::retest(&self.desk, plan?, stop, files);
         }
         let (mut session, error) = match plan.and_then(|plan| self.next_session(plan, why)) {
             Ok(session) => (session, None),
@@ -165,19 +137,19 @@ impl Relearner {
             },
         };
         self.learn(&mut session, error.as_deref(), stop)?;
-        self.session = Some(session).filter(|_| self.settings.keep.is_some());
+        self.session = Some(session).filter(|_| self.desk.settings.keep.is_some());
         Ok(())
     }
 
     /// What this save learns: from nothing, or what was learned before under another reward.
     fn next_session(&mut self, mut plan: Plan, why: Why) -> Result<Session> {
-        if self.settings.keep.is_some() {
+        if self.desk.settings.keep.is_some() {
             // A window of the curve is of one reward only.
             plan.settings.run.steps = plan.settings.run.steps.next_multiple_of(WINDOW_STEPS);
         }
         let mut note = String::new();
         let kept = self.session.take().filter(|_| why == Why::Saved);
-        if let (Some(carry), Some(mut session)) = (self.settings.keep, kept) {
+        if let (Some(carry), Some(mut session)) = (self.desk.settings.keep, kept) {
             match plan.differs_beyond_reward(session.plan()) {
                 None => {
                     session.swap(plan, carry)?;
@@ -186,14 +158,14 @@ impl Relearner {
                 Some(what) => note = format!("{what} changed, so from nothing; "),
             }
         }
-        let whole = self.settings.keep.is_some() || self.settings.finished.is_some();
-        Session::new(plan, &self.settings.seeds, self.settings.threads, whole, note)
+        let whole = self.desk.settings.keep.is_some() || self.desk.settings.finished.is_some();
+        Session::new(plan, &self.desk.settings.seeds, self.desk.settings.threads, whole, note)
     }
 
     fn learn(&self, session: &mut Session, error: Option<&Diagnostic>, stop: &AtomicBool) -> Result<()> {
         let (started, mut shown, mut pause) = (Instant::now(), Instant::now(), SHOWN_EVERY);
         let (from, steps) = (session.done(), session.plan().learning_steps());
-        let seeds = match self.settings.seeds.len() {
+        let seeds = match self.desk.settings.seeds.len() {
             1 => "one seed".to_owned(),
             count => format!("{count} seeds"),
         };
@@ -206,8 +178,8 @@ impl Relearner {
             session.advance()?;
             if shown.elapsed() >= pause && !session.is_over() {
                 let begun = Instant::now();
-                let text = format!("save {}: {note}step {} of {steps}", self.save, session.done());
-                self.show(session.plan().clone(), session.seeds(false)?, false, &text, error)?;
+                let text = format!("save {}: {note}step {} of {steps}", self.desk.save, session.done());
+                self.desk.show(session.plan().clone(), session.seeds(false)?, false, &text, error)?;
                 // Showing takes a tenth of the time at most.
                 (shown, pause) = (Instant::now(), SHOWN_EVERY.max(10 * begun.elapsed()));
             }
@@ -216,8 +188,9 @@ impl Relearner {
             return Ok(());
         }
         let learned_s = started.elapsed().as_secs_f64();
-        let text = format!("save {}: {note}learned in {learned_s:.2} s", self.save);
-        let run = self.show(session.plan().clone(), session.seeds(true)?, false, &format!("{text}; testing"), error)?;
+        let text = format!("save {}: {note}learned in {learned_s:.2} s", self.desk.save);
+        let run =
+            self.desk.show(session.plan().clone(), session.seeds(true)?, false, &format!("{text}; testing"), error)?;
         let tested = self.test(&run, session.room(), stop)?;
         if stop.load(Ordering::Relaxed) {
             return Ok(());
@@ -229,18 +202,18 @@ impl Relearner {
             test: Some(test.figures.clone()),
             tested,
         });
-        let run = self.show(run.plan.clone(), seeds.collect(), true, &format!("{text}, tested"), error)?;
+        let run = self.desk.show(run.plan.clone(), seeds.collect(), true, &format!("{text}, tested"), error)?;
         session.end();
-        if let Some(finished) = &self.settings.finished {
+        if let Some(finished) = &self.desk.settings.finished {
             finished(&run, tests, started.elapsed().as_secs_f64())?;
         }
-        findings::tell(&self.board, &run, self.settings.threads, stop);
+        findings::tell(&self.desk.board, &run, self.desk.settings.threads, stop);
         Ok(())
     }
 
     fn test(&self, run: &SavedRun, room: u64, stop: &AtomicBool) -> Result<Vec<(TestRun, Ledger)>> {
         let indices: Vec<u64> = (0..run.seeds.len() as u64).collect();
-        in_parallel(&indices, self.settings.threads, |index| {
+        in_parallel(&indices, self.desk.settings.threads, |index| {
             let seed = &run.seeds[index as usize].learned;
             let mut tested = Ledger::new(&run.plan, run.plan.settings.run.test_steps.min(room));
             let test = test_and_watch(&run.plan, &seed.policy, seed.seed, stop, &mut tested)?;
@@ -249,7 +222,8 @@ impl Relearner {
     }
 
     fn plan(&self, files: &Mutex<Files>) -> Result<Plan> {
-        let plan = Plan::load(&self.settings.behaviour, &self.settings.overrides, &self.settings.filters)?;
+        let plan =
+            Plan::load(&self.desk.settings.behaviour, &self.desk.settings.overrides, &self.desk.settings.filters)?;
         let world = plan.layout.source.path.clone();
         files.lock().unwrap_or_else(PoisonError::into_inner).watch([world])?;
         Ok(plan)
@@ -258,25 +232,9 @@ impl Relearner {
     /// Says what is being done, or what is wrong with the script that was saved while it is done.
     fn say(&self, text: &str, error: Option<&Diagnostic>) {
         match error {
-            Some(error) => self.board.failed(error),
-            None => self.board.working(text),
+            Some(error) => self.desk.board.failed(error),
+            None => self.desk.board.working(text),
         }
-    }
-
-    pub(super) fn show(
-        &self,
-        plan: Plan,
-        seeds: Vec<WatchedSeed>,
-        done: bool,
-        text: &str,
-        error: Option<&Diagnostic>,
-    ) -> Result<Arc<SavedRun>> {
-        let data: Vec<_> = seeds.iter().map(WatchedSeed::data).collect();
-        let document = Document::new(&plan, &data, Moments { shots: 0, scans: done, seeds: Some(1) })?;
-        let run = Arc::new(SavedRun { save: self.save, plan, seeds });
-        self.board.run(&run, done, text, &document)?;
-        error.into_iter().for_each(|error| self.board.failed(error));
-        Ok(run)
     }
 }
 

@@ -6,7 +6,7 @@ use ratatui_core::text::{Line, Span};
 
 use super::dots::{Dot, Dots, Rank};
 use super::ink::Ink;
-use super::screen::{heading, nothing, write};
+use super::lines::{heading, nothing, write};
 use super::view::View;
 use super::words::{columns, ticks};
 use engine::experiment::Phase;

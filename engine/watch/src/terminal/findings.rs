@@ -6,7 +6,7 @@ use ratatui_core::style::Style;
 use ratatui_core::text::{Line, Span};
 
 use super::ink::Ink;
-use super::screen::{heading, nothing, write_all};
+use super::lines::{heading, nothing, write_all};
 use super::view::View;
 use super::words::{fit, lines};
 use engine::diagnostic::printable;

@@ -6,7 +6,7 @@ use ratatui_core::text::{Line, Span};
 
 use super::ink::Ink;
 use super::keys::KEYS;
-use super::screen::{ends, heading, write, write_all};
+use super::lines::{ends, heading, write, write_all};
 use super::view::{SPEEDS, View};
 use super::words::{columns, fit, signed};
 use engine::experiment::{Phase, learned_at};

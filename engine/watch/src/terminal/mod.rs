@@ -16,6 +16,7 @@ mod findings;
 mod foot;
 mod ink;
 mod keys;
+mod lines;
 mod player;
 mod rules;
 mod screen;

@@ -6,7 +6,7 @@ use ratatui_core::style::{Modifier, Style};
 use ratatui_core::text::{Line, Span};
 
 use super::ink::Ink;
-use super::screen::{heading, write, write_all};
+use super::lines::{heading, write, write_all};
 use super::story::part;
 use super::view::View;
 use super::words::{columns, fit, signed, total};

@@ -9,7 +9,7 @@ use ratatui_core::text::Span;
 
 use super::dots::{Dot, Dots, Rank};
 use super::ink::Ink;
-use super::screen::{heading, nothing};
+use super::lines::{heading, nothing};
 use super::view::View;
 use engine::experiment::Record;
 use insight::page::{Document, Outline};

@@ -1,0 +1,60 @@
+//! What all of a watch have at hand: what is watched, how it is learned, and the board on which it is shown.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::board::{Board, SavedRun, WatchedSeed};
+use engine::diagnostic::{Diagnostic, Result};
+use engine::experiment::{Overrides, Plan, TestRun};
+use engine::filter::Catalogue;
+use engine::learner::Carry;
+use insight::page::{Document, Moments};
+
+/// Called with every run that was learned and tested, its tests, and the seconds that both took.
+pub type Finished = Box<dyn Fn(&SavedRun, Vec<TestRun>, f64) -> Result<()> + Send>;
+
+/// What is watched and how it is learned.
+pub struct WatchSettings {
+    /// The script.
+    pub behaviour: PathBuf,
+    /// The seeds.
+    pub seeds: Vec<u64>,
+    /// Threads to learn with; 0 is one for each core.
+    pub threads: usize,
+    /// Whether a save that changes only the reward goes on with what was learned, and what becomes of the table then.
+    pub keep: Option<Carry>,
+    /// What is done with finished runs.
+    pub finished: Option<Finished>,
+    /// What the command line changes.
+    pub overrides: Overrides,
+    /// Folders of filters.
+    pub filter_folders: Vec<PathBuf>,
+    /// Makes the catalogue of filters anew, since a filter may have been saved.
+    pub filters: Box<dyn Fn() -> Result<Arc<Catalogue>> + Send>,
+}
+
+/// Settings, board, and the number of the save that is worked on.
+pub(super) struct Desk {
+    pub(super) settings: WatchSettings,
+    pub(super) board: Arc<Board>,
+    pub(super) save: u64,
+}
+
+impl Desk {
+    /// Puts a run on the board, with what is wrong with the script that was saved meanwhile.
+    pub(super) fn show(
+        &self,
+        plan: Plan,
+        seeds: Vec<WatchedSeed>,
+        done: bool,
+        text: &str,
+        error: Option<&Diagnostic>,
+    ) -> Result<Arc<SavedRun>> {
+        let data: Vec<_> = seeds.iter().map(WatchedSeed::data).collect();
+        let document = Document::new(&plan, &data, Moments { shots: 0, scans: done, seeds: Some(1) })?;
+        let run = Arc::new(SavedRun { save: self.save, plan, seeds });
+        self.board.run(&run, done, text, &document)?;
+        error.into_iter().for_each(|error| self.board.failed(error));
+        Ok(run)
+    }
+}
