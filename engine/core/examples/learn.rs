@@ -1,5 +1,7 @@
 //! Learns a behaviour from its script and tests what was learned: `cargo run --release -p engine --example learn`.
 
+#![allow(clippy::print_stdout, reason = "an example shows what it found")]
+
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;

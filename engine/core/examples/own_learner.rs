@@ -1,6 +1,8 @@
 //! A learner of one's own: it remembers what each action brought in each state, and nothing of what came later.
 //! `cargo run --release -p engine --example own_learner`.
 
+#![allow(clippy::print_stdout, reason = "an example shows what it found")]
+
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;

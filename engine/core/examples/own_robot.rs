@@ -4,6 +4,8 @@
 //! The robot is a thread that listens on loopback: a point in a round room, whose camera sees a dark floor and a bright wall
 //! that reaches down the farther the nearer it is. A real robot would be at the other end of the socket.
 
+#![allow(clippy::print_stdout, reason = "an example shows what it found")]
+
 use std::io::{Read, Write};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
@@ -91,7 +93,7 @@ impl Remote {
 
     /// How far the wall is in a direction from straight ahead, metres.
     fn range_m(&self, bearing_rad: f64) -> f64 {
-        let (sin, cos) = (self.pose.yaw_rad + bearing_rad).sin_cos();
+        let (sin, cos) = libm::sincos(self.pose.yaw_rad + bearing_rad);
         let along = self.pose.x_m * cos + self.pose.y_m * sin;
         let away = self.pose.distance_m(Pose::default());
         (along * along + ROOM_M * ROOM_M - away * away).max(0.0).sqrt() - along

@@ -1,6 +1,8 @@
 //! Steps many robots side by side, each as an environment of its own:
 //! `cargo run --release -p engine --example step_many`.
 
+#![allow(clippy::print_stdout, reason = "an example shows what it found")]
+
 use std::path::Path;
 use std::sync::Arc;
 

@@ -57,7 +57,7 @@ impl Kind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
-    /// Nothing can be learned so.
+    /// It must be mended before anything can be learned.
     Error,
     /// Most likely not what is meant.
     Warning,
@@ -168,14 +168,14 @@ impl Diagnostic {
         Self { code, message: message.into(), place: None, help: None, others: Vec::new(), left_out: 0 }
     }
 
-    /// The same, pointing at `span` of `source` with `label` beside the caret.
+    /// Points at `span` of `source` with `label` beside the caret.
     #[must_use]
     pub fn at(mut self, source: &SourceText, span: Range<usize>, label: impl Into<String>) -> Self {
         self.place = Some(Box::new(Place { source: source.clone(), span, label: label.into() }));
         self
     }
 
-    /// The same, with the next step.
+    /// Adds the next step.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());

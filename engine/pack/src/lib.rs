@@ -1,4 +1,4 @@
-//! SHARE: a behaviour in one file that carries its own evidence and cannot hurt who opens it.
+//! A behaviour in one file that carries its own evidence and cannot hurt who opens it.
 //!
 //! A pack is an uncompressed tar in one canonical form. Reading goes through narrowing gates: [`archive`] allows regular
 //! files with harmless names only, the manifest says which files there must be, and [`Pack`] is what passed both. Nothing

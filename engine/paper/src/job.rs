@@ -25,19 +25,19 @@ impl Learn {
         Self { script, set: &[], steps: None, test_steps: 3_000, most_seeds: u64::MAX }
     }
 
-    /// The same with changes.
+    /// This job with changed settings.
     #[must_use]
     pub const fn set(self, set: &'static [&'static str]) -> Self {
         Self { set, ..self }
     }
 
-    /// The same for another number of steps, under at most so many seeds.
+    /// This job for another number of steps, under at most so many seeds.
     #[must_use]
     pub const fn long(self, steps: u64, most_seeds: u64) -> Self {
         Self { steps: Some(steps), most_seeds, ..self }
     }
 
-    /// The same under at most so many seeds.
+    /// This job under at most so many seeds.
     #[must_use]
     pub const fn seeds(self, most_seeds: u64) -> Self {
         Self { most_seeds, ..self }

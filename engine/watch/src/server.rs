@@ -35,7 +35,7 @@ const PORTS: u16 = 20;
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(30);
 /// Who was refused has to wait: a flood of requests cannot take the processor from learning.
 const REFUSED_WAIT: Duration = Duration::from_millis(100);
-/// The same for who comes while all places are taken.
+/// The answer to whoever comes while all places are taken.
 const TURNED_AWAY_WAIT: Duration = Duration::from_millis(5);
 
 /// A place among the connections, which travels with its connection.

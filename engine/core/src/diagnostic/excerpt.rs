@@ -1,4 +1,4 @@
-//! Lines of a source with words under them, for what is no error.
+//! Lines of a source with words under them, for findings and explanations.
 
 use std::ops::Range;
 

@@ -123,7 +123,7 @@ pub struct DisagreementFigures {
     pub states: [usize; 2],
     /// The number of the best action of each of them.
     pub actions: [usize; 2],
-    /// The same as forward speed in m/s and turning speed in rad/s.
+    /// These actions as forward speed in m/s and turning speed in rad/s.
     pub motions: [[f64; 2]; 2],
     /// In how many steps.
     pub steps: u64,

@@ -19,7 +19,7 @@ pub struct Leg {
 }
 
 impl Plan {
-    /// The same plan after these legs.
+    /// This plan after these legs.
     #[must_use]
     pub fn after(self, earlier: Vec<Leg>) -> Self {
         Self { earlier, ..self }

@@ -42,7 +42,7 @@ impl Parts<'_> {
         Chain::new(&self.settings.filters, width_px, height_px, self.filters).map_err(|error| self.in_chain(error))
     }
 
-    /// The same, with all that is wrong in it.
+    /// A fresh filter chain, or all that is wrong in it.
     fn tried_chain(&self) -> Result<Chain> {
         self.chain().map_err(|first| {
             let mut mistakes = Mistakes::new(self.behaviour.source());

@@ -55,7 +55,7 @@ impl Plan {
         Self::with_filters(behaviour, overrides, Arc::new(Catalogue::linked_in()))
     }
 
-    /// The same for a behaviour that may use other filters too.
+    /// Resolves a behaviour that may use other filters too.
     ///
     /// # Errors
     /// As [`Plan::new`].
@@ -102,7 +102,7 @@ impl Plan {
         Self::checked(behaviour, settings, layout.map(Arc::new), filters, unread, mistakes)
     }
 
-    /// The same plan with changes; it keeps its world unless another is named.
+    /// This plan with changes; it keeps its world unless another is named.
     ///
     /// # Errors
     /// As [`Plan::new`].

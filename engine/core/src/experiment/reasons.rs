@@ -15,7 +15,7 @@ pub struct StepReasons {
     pub time_s: f64,
     /// The state in which the action was chosen, and its cells, row by row from the top left.
     pub state: StateCells,
-    /// The same at the end of the step, before any recovery.
+    /// The state at the end of the step, before any recovery, and its cells.
     pub next_state: StateCells,
     /// The action's number.
     pub action: usize,

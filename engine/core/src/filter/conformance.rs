@@ -16,7 +16,7 @@ const SIZES: [(usize, usize); 10] =
 ///
 /// # Errors
 /// If it refuses its defaults or the ends of its ranges, fails on a frame, leaves a byte unwritten, remembers another frame,
-/// or writes a mask that is none.
+/// or writes something else than a mask.
 pub fn conformance(entry: &Entry) -> Result<u64> {
     let all = settings(entry.descriptor.parameters);
     let mut frames = 0;

@@ -1,4 +1,4 @@
-//! SEE. The chain of filters that turns a camera image into a mask.
+//! The chain of filters that turns a camera image into a mask.
 //!
 //! Filters come from a [`Catalogue`]: those linked in, native libraries that the user allowed, and sandboxed WebAssembly
 //! modules, all by the contract of `plugins/filter-api`. This room never knows a world, a state or a script.

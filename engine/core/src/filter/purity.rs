@@ -15,7 +15,7 @@ const ORDER: [u32; 5] = [0, 1, 1, 2, 0];
 /// Runs a filter with its parameters over a few frames of noise.
 ///
 /// # Errors
-/// If it fails on one of them, answers differently when a frame comes again, or writes a mask that is none.
+/// If it fails on one of them, answers differently when a frame comes again, or writes something else than a mask.
 pub(super) fn check_purity(entry: &Entry, values: &[f64], reads: Format) -> Result<()> {
     let writes = entry.descriptor.writes;
     let mut first: [Option<Vec<u8>>; 3] = [None, None, None];

@@ -29,7 +29,7 @@ pub(crate) struct Present {
     pub facts: Arc<Facts>,
     /// What `fn calibrate` returned; nothing before it ran.
     pub calibrated: Option<Arc<Dynamic>>,
-    /// The same as native trees read it.
+    /// The present step as native trees read it.
     pub slots: Vec<Slot>,
 }
 

@@ -183,7 +183,7 @@ impl Comparison {
         })
     }
 
-    /// The same with its sides exchanged.
+    /// The comparison with its sides exchanged.
     pub(crate) const fn turned(self) -> Self {
         match self {
             Self::Less => Self::Greater,

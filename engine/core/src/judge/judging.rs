@@ -192,7 +192,7 @@ impl Judge {
     }
 }
 
-/// The same value with every whole number as one with a fraction: what was measured is not counted.
+/// A value with every whole number as one with a fraction: what was measured is not counted.
 fn plain(value: Dynamic) -> Dynamic {
     if let Ok(whole) = value.as_int() {
         return Dynamic::from(whole as f64);

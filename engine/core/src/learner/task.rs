@@ -62,6 +62,6 @@ pub struct Transition {
     /// What delayed rules had built up before the step: the sum, over the rules that must hold for a time and have a fixed
     /// value, of that value times the share of the time for which they have held.
     pub potential: f64,
-    /// The same sum after the step, before any recovery.
+    /// What delayed rules have built up after the step, before any recovery.
     pub next_potential: f64,
 }

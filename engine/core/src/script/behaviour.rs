@@ -104,7 +104,7 @@ impl Behaviour {
         Ok(self.unchecked_judge(period_s, beams))
     }
 
-    /// The same for rules that may name beams that there are not: these must not be judged.
+    /// A judge for rules that may name beams that the laser does not have: these must not be judged.
     pub(super) fn unchecked_judge(&self, period_s: f64, beams: usize) -> Judge {
         Judge::new(Arc::clone(&self.loaded), period_s, beams)
     }

@@ -51,7 +51,7 @@ pub(super) fn rules(
 }
 
 /// Checks and compiles a rule; nothing if there is a mistake in it. Each is added to `mistakes`: an empty name, a
-/// condition that is none, a value that is no number, a time that is no time.
+/// condition that is not true or false, a value that is not a number, a time that cannot be one.
 fn compiled(
     code: &Code,
     written: &WrittenRule<'_>,

@@ -231,7 +231,7 @@ impl Code {
         self.statement_before(start, self.plain.len())
     }
 
-    /// The same, to `end` at most.
+    /// As before, to `end` at most.
     pub(super) fn statement_before(&self, start: usize, end: usize) -> Range<usize> {
         let tail = &self.plain[start..end];
         let mut depth = 0_i32;

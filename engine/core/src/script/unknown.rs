@@ -68,7 +68,7 @@ impl Unknown {
     }
 }
 
-/// The same with the other lines in which the name stands.
+/// Adds the other lines in which the name stands.
 fn with_lines(wrong: Diagnostic, mut lines: Vec<usize>) -> Diagnostic {
     lines.dedup();
     let Some((_, others @ [first, ..])) = lines.split_first() else { return wrong };

@@ -90,7 +90,7 @@ impl<C: PixelCanvas> Painting<'_, C> {
         places
     }
 
-    /// The same along rays through any places of the view.
+    /// Paints along rays through any places of the view.
     #[inline(always)]
     fn places_through(&self, stretch: Stretch, xs: &[f32], ys: &[f32]) -> Places {
         let [along, across, nearness] = self.affine(stretch).map(|value| value.0.map(|part| part as f32));

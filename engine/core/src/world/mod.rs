@@ -83,7 +83,7 @@ impl World {
         world
     }
 
-    /// The same world with every mover `speed` times as fast as its file says.
+    /// This world with every mover `speed` times as fast as its file says.
     #[must_use]
     pub fn with_mover_speed(self, speed: f64) -> Self {
         Self { mover_speed: speed, ..self }

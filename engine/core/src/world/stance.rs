@@ -20,7 +20,7 @@ impl Stance {
         Self { pose, sin, cos, z_m, slope_x: 0.0, slope_y: 0.0 }
     }
 
-    /// The same plane carried along to another pose.
+    /// This plane carried along to another pose.
     pub(super) fn moved(self, pose: Pose) -> Self {
         Self { z_m: self.z_m, slope_x: self.slope_x, slope_y: self.slope_y, ..Self::level(pose, 0.0) }
     }

@@ -36,7 +36,7 @@ impl Finding {
         Self { code, severity: Severity::Warning, message: message.into(), label, help, line, column, span }
     }
 
-    /// The same with words beside the caret and a way out.
+    /// Adds words beside the caret and a way out.
     #[must_use]
     pub fn say(mut self, label: impl Into<String>, help: impl Into<String>) -> Self {
         (self.label, self.help) = (label.into(), help.into());

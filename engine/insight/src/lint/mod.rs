@@ -1,4 +1,4 @@
-//! LINT. What is wrong or suspicious in a behaviour that loads, before anyone waits for it to learn.
+//! What is wrong or suspicious in a behaviour that loads, before anyone waits for it to learn.
 //!
 //! First what can be read from the script, then what a few thousand steps show, then the best that this reward can be had
 //! for. Everything is deterministic: the same script and world give the same findings.
@@ -63,7 +63,7 @@ pub fn check_behaviour(plan: &Plan) -> Result<Report> {
     look(plan, 0, &AtomicBool::new(false))
 }
 
-/// The same on so many threads (0: one for each core), until `stop` is set: then nothing.
+/// Checks on so many threads (0: one for each core), until `stop` is set: then nothing.
 ///
 /// # Errors
 /// As [`check_behaviour`].
@@ -90,7 +90,7 @@ fn look(plan: &Plan, threads: usize, stop: &AtomicBool) -> Result<Report> {
                 verdict::check_exploits(plan, &found, &mut findings);
                 exploits = Some(found);
             }
-            // The script's own mistake is a finding like others; what a limit stopped is none.
+            // The script's own mistake is a finding like others; what a limit stopped is not.
             Err(fault) if fault.kind() == Kind::Input => findings.push(Finding::of_error(plan, &fault)),
             Err(fault) => return Err(fault),
         }

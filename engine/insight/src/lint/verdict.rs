@@ -4,7 +4,7 @@ use super::{Exploit, Exploits, Finding};
 use crate::words::rounded;
 use engine::experiment::{Plan, WINDOW_STEPS};
 
-/// A cheat that is brought back more often than this in 1,000 steps is none.
+/// A cheat that is brought back more often than this in 1,000 steps does not count as one.
 const MOST_FAILURES: f64 = 20.0;
 
 /// What the cheapest cheat earns, held against driving on.

@@ -26,7 +26,7 @@ impl Ink {
         Self { rgb: [(rgb >> 16) as u8, (rgb >> 8) as u8, rgb as u8], alpha: 1.0 }
     }
 
-    /// The same colour, thinner.
+    /// This colour, thinner.
     pub(super) const fn thin(self, alpha: f64) -> Self {
         Self { alpha, ..self }
     }

@@ -85,7 +85,9 @@ pub(super) fn outlines(text: &Text) -> Vec<Vec<Point>> {
         let mut pen = Pen { place, at: (0.0, 0.0), outlines: Vec::new() };
         let settings = DrawSettings::unhinted(Size::unscaled(), LocationRef::default());
         // A glyph that cannot be drawn leaves its room empty.
-        drop(letters.get(glyph).map(|letter| letter.draw(settings, &mut pen)));
+        if let Some(letter) = letters.get(glyph) {
+            let _ = letter.draw(settings, &mut pen);
+        }
         outlines.append(&mut pen.outlines);
     }
     outlines

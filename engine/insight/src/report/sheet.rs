@@ -117,7 +117,7 @@ pub(super) fn words(words: &str, at: Spot, em_px: f64, ink: Ink) -> Text {
     }
 }
 
-/// The same text around its place.
+/// A text around its place.
 pub(super) fn centred(text: Text) -> Text {
     Text { along: Align::Middle, ..text }
 }

@@ -149,7 +149,7 @@ impl StoredRun {
         Self::load_with(folder, Arc::new(Catalogue::linked_in()))
     }
 
-    /// The same for a run that used other filters than those linked in.
+    /// Reads a run that used other filters than those linked in.
     ///
     /// # Errors
     /// As [`StoredRun::load`], and if a filter is missing or another than it was.

@@ -53,7 +53,7 @@ const GLANCE: Duration = Duration::from_millis(60);
 /// How long a drawing waits for the laser's scan; it is drawn later if it takes longer.
 const SCAN_WAIT: Duration = Duration::from_millis(12);
 
-/// Refuses what is no terminal, before anything is learned.
+/// Refuses anything but a terminal, before anything is learned.
 ///
 /// # Errors
 /// If standard input or standard output is not a terminal.

@@ -50,7 +50,7 @@ pub(super) fn plan(arguments: &BenchArguments) -> Result<Plan> {
     if arguments.texture { textured(plan) } else { Ok(plan) }
 }
 
-/// The same with speckles on every plain surface and noise on every pixel.
+/// A plan with speckles on every plain surface and noise on every pixel.
 pub(super) fn textured(mut plan: Plan) -> Result<Plan> {
     let mut parts = plan.layout.scene.parts().clone();
     for material in parts.materials.iter_mut().filter(|material| material.texture == Texture::Plain) {
@@ -62,7 +62,7 @@ pub(super) fn textured(mut plan: Plan) -> Result<Plan> {
     Plan::with_layout(plan.behaviour, plan.settings, Arc::new(layout), plan.filters)
 }
 
-/// The same with boxes far away, so that there are `solids` in all.
+/// A plan with boxes far away, so that there are `solids` in all.
 pub(super) fn with_boxes(plan: &Plan, solids: usize) -> Result<Plan> {
     let own = plan.layout.scene.parts().solids.len();
     let mut text = plan.layout.source.text.to_string();
@@ -75,13 +75,13 @@ pub(super) fn with_boxes(plan: &Plan, solids: usize) -> Result<Plan> {
     Plan::with_layout(Arc::clone(&plan.behaviour), plan.settings.clone(), Arc::new(layout), Arc::clone(&plan.filters))
 }
 
-/// The same with other settings.
+/// A plan with other settings.
 pub(super) fn with_settings(plan: &Plan, pairs: &[(&str, u64)]) -> Result<Plan> {
     let set = pairs.iter().map(|(key, value)| format!("{key}={value}")).collect();
     plan.clone().with_changes(&Overrides { set, ..Overrides::default() })
 }
 
-/// The same for another number of steps.
+/// A plan for another number of steps.
 pub(super) fn with_steps(plan: &Plan, steps: u64) -> Plan {
     let mut plan = plan.clone();
     plan.settings.run.steps = steps;
