@@ -128,7 +128,7 @@ mod tests {
         // Allowed, and now seen to be no library.
         assert_eq!(read(&path, &trust).err().unwrap().code, "E-NATIVE-ABI");
         std::fs::write(&path, "abd").unwrap();
-        assert_eq!(read(&path, &trust).err().unwrap().code, "E-NATIVE-DIGEST");
+        assert_eq!(read(&path, &trust).err().unwrap().code, "E-NATIVE-DENIED");
     }
 
     #[test]
