@@ -55,7 +55,7 @@ pub(crate) struct ScriptClause {
 
 /// A rule, ready to be judged.
 #[derive(Debug)]
-pub(crate) struct Rule {
+pub(crate) struct CompiledRule {
     pub text: RuleText,
     pub condition: Clause<Flag>,
     pub condition_span: Range<usize>,
@@ -67,7 +67,7 @@ pub(crate) struct Rule {
     pub parts: Vec<Part>,
 }
 
-impl Rule {
+impl CompiledRule {
     /// `rule "too close"`, safe for a terminal.
     pub(crate) fn shown(&self) -> String {
         format!("rule \"{}\"", printable(&self.text.name))
