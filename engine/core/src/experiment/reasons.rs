@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{Ledger, Phase, Plan, Playback};
 use crate::diagnostic::Result;
-use crate::judge::{Evidence, FactRead, Judge, RuleText};
+use crate::judge::{FactRead, Judge, PartRead, RuleText};
 
 /// One step with its reasons.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -157,7 +157,7 @@ impl RuleReasons {
             unit: fact.unit,
             beam: fact.beam,
         };
-        let part = |Evidence { span, holds, facts }| PartReasons {
+        let part = |PartRead { span, holds, facts }| PartReasons {
             text: plan.behaviour.source().text.get(span.clone()).unwrap_or_default().to_owned(),
             span: [span.start, span.end],
             holds,

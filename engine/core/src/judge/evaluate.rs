@@ -1,13 +1,13 @@
 //! Rules and functions evaluated on the present facts.
 
+use super::compiled::{CompiledScript, variable};
 use super::explain;
-use super::expression::{Inputs, Slot};
+use super::expression::{Slot, StepFacts};
 use super::facts::Facts;
-use super::loaded::{Loaded, variable};
 use super::readings::Part;
-use super::rule::{Clause, Rule, ScriptClause};
+use super::rule::{Clause, CompiledRule, ScriptClause};
 use super::running;
-use super::views::{All, number, view};
+use super::views::{AllFacts, number, view};
 use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
 use rhai::{CallFnOptions, Dynamic, Map, Scope};
 use std::ops::Range;
@@ -25,7 +25,7 @@ pub struct Judgement {
 /// A script, and what it can read in this step.
 #[derive(Debug)]
 pub(crate) struct Present {
-    pub loaded: Arc<Loaded>,
+    pub compiled: Arc<CompiledScript>,
     pub facts: Arc<Facts>,
     /// What `fn calibrate` returned; nothing before it ran.
     pub calibrated: Option<Arc<Dynamic>>,
@@ -34,16 +34,16 @@ pub(crate) struct Present {
 }
 
 impl Present {
-    pub(crate) fn inputs(&self) -> Inputs<'_> {
-        Inputs { facts: &self.facts, slots: &self.slots }
+    pub(crate) fn inputs(&self) -> StepFacts<'_> {
+        StepFacts { facts: &self.facts, slots: &self.slots }
     }
 
     /// What a rule, or after the last one `fn reward`, reads.
     pub(crate) fn parts(&self, rule: usize) -> &[Part] {
-        self.loaded.rules.get(rule).map_or(&self.loaded.reward_parts, |rule| &rule.parts)
+        self.compiled.rules.get(rule).map_or(&self.compiled.reward_parts, |rule| &rule.parts)
     }
 
-    pub(crate) fn condition(&self, rule: &Rule) -> Result<bool> {
+    pub(crate) fn condition(&self, rule: &CompiledRule) -> Result<bool> {
         let script = match &rule.condition {
             Clause::Native(flag) => return Ok(flag.holds(self.inputs())),
             Clause::Script(script) => script,
@@ -55,13 +55,13 @@ impl Present {
             let wrong = Diagnostic::new("E-SCRIPT-RULE", message);
             Box::new(
                 wrong
-                    .at(&self.loaded.source, rule.condition_span.clone(), label)
+                    .at(&self.compiled.source, rule.condition_span.clone(), label)
                     .help("compare it: laser.nearest < 0.25"),
             )
         })
     }
 
-    pub(crate) fn value(&self, rule: &Rule) -> Result<f64> {
+    pub(crate) fn value(&self, rule: &CompiledRule) -> Result<f64> {
         let script = match &rule.value {
             Clause::Native(number) => return Ok(number.value(self.inputs())),
             Clause::Script(script) => script,
@@ -70,12 +70,12 @@ impl Present {
         number(&result).ok_or_else(|| {
             let label = format!("this is {}", explain::plain_kind(result.type_name()));
             let wrong = Diagnostic::new("E-SCRIPT-RULE", "a rule's value must be a number");
-            Box::new(wrong.at(&self.loaded.source, rule.value_span.clone(), label).help("write a number, such as -1"))
+            Box::new(wrong.at(&self.compiled.source, rule.value_span.clone(), label).help("write a number, such as -1"))
         })
     }
 
     fn run(&self, script: &ScriptClause) -> Result<Dynamic> {
-        let loaded = &*self.loaded;
+        let compiled = &*self.compiled;
         let mut scope = Scope::new();
         for root in &script.roots {
             match root.as_str() {
@@ -88,28 +88,29 @@ impl Present {
             }
         }
         for index in 0..script.variables {
-            if let Some((name, value)) = variable(&loaded.constants, index) {
+            if let Some((name, value)) = variable(&compiled.constants, index) {
                 scope.push_dynamic(name, value);
             }
         }
-        let result = loaded.engine.eval_ast_with_scope::<Dynamic>(&mut scope, &script.ast);
-        result.map_err(|error| Box::new(running::explain(&loaded.source, &error)))
+        let result = compiled.engine.eval_ast_with_scope::<Dynamic>(&mut scope, &script.ast);
+        result.map_err(|error| Box::new(running::explain(&compiled.source, &error)))
     }
 
     fn calibration(&self) -> Arc<Dynamic> {
         self.calibrated.as_ref().map_or_else(Arc::default, Arc::clone)
     }
 
-    fn all(&self) -> All {
-        All::new(&self.facts, &self.calibration())
+    fn all(&self) -> AllFacts {
+        AllFacts::new(&self.facts, &self.calibration())
     }
 
     pub(crate) fn call(&self, function: &str) -> Result<Dynamic> {
-        let loaded = &*self.loaded;
+        let compiled = &*self.compiled;
         let options = CallFnOptions::new().eval_ast(false).rewind_scope(true);
         let arguments = (self.all(),);
-        let result = loaded.engine.call_fn_with_options(options, &mut Scope::new(), &loaded.ast, function, arguments);
-        result.map_err(|error| Box::new(running::explain(&loaded.source, &error)))
+        let result =
+            compiled.engine.call_fn_with_options(options, &mut Scope::new(), &compiled.ast, function, arguments);
+        result.map_err(|error| Box::new(running::explain(&compiled.source, &error)))
     }
 
     /// What `fn reward` returns; its value may still be infinite.
@@ -120,7 +121,7 @@ impl Present {
         }
         let wrong = |message: String| {
             Diagnostic::new("E-REWARD-VALUE", message)
-                .at(&self.loaded.source, span.clone(), "defined here")
+                .at(&self.compiled.source, span.clone(), "defined here")
                 .help("return a number, or #{ value: -1, recover: true }")
         };
         let kind = explain::plain_kind(result.type_name());
@@ -147,7 +148,7 @@ impl Present {
         let value = if value.is_nan() { "no number (NaN)".to_owned() } else { value.to_string() };
         let message = format!("{what} gave {value} as its value");
         Diagnostic::new("E-REWARD-VALUE", message)
-            .at(&self.loaded.source, span, format!("gave {value}"))
+            .at(&self.compiled.source, span, format!("gave {value}"))
             .help("look for a division by 0, or the root or logarithm of a negative number")
     }
 }

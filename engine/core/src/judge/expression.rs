@@ -14,7 +14,7 @@ pub(crate) enum Slot {
 
 /// What a tree reads.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Inputs<'a> {
+pub(crate) struct StepFacts<'a> {
     pub facts: &'a Facts,
     pub slots: &'a [Slot],
 }
@@ -99,7 +99,7 @@ impl Typed {
 impl Number {
     // Most rules compare a fact with a constant: these two are worth a way of their own, without a call.
     #[inline]
-    pub(crate) fn value(&self, inputs: Inputs<'_>) -> f64 {
+    pub(crate) fn value(&self, inputs: StepFacts<'_>) -> f64 {
         match self {
             Self::Constant(value) => *value,
             Self::Fact(get, _) => get(inputs.facts),
@@ -107,7 +107,7 @@ impl Number {
         }
     }
 
-    fn branch(&self, inputs: Inputs<'_>) -> f64 {
+    fn branch(&self, inputs: StepFacts<'_>) -> f64 {
         match self {
             Self::Constant(_) | Self::Fact(..) => self.value(inputs),
             Self::Whole(get, _) => get(inputs.facts) as f64,
@@ -134,7 +134,7 @@ impl Number {
 }
 
 impl Flag {
-    pub(crate) fn holds(&self, inputs: Inputs<'_>) -> bool {
+    pub(crate) fn holds(&self, inputs: StepFacts<'_>) -> bool {
         match self {
             Self::Constant(value) => *value,
             Self::Fact(get) => get(inputs.facts),

@@ -1,11 +1,11 @@
 //! One run's judging: refilled facts in, one judgement for each step out.
 
+use super::compiled::CompiledScript;
 use super::evaluate::{Judgement, Present};
 use super::explain;
 use super::expression::Slot;
 use super::facts::Facts;
-use super::loaded::Loaded;
-use super::readings::{self, Evidence};
+use super::readings::{self, PartRead};
 use super::views::{number, wrong_length};
 use crate::diagnostic::{Diagnostic, Result};
 use rhai::{Dynamic, Map};
@@ -25,18 +25,18 @@ pub struct Judge {
 }
 
 impl Judge {
-    pub(crate) fn new(loaded: Arc<Loaded>, period_s: f64, beams: usize) -> Self {
-        let needed: Vec<u32> = loaded.rules.iter().map(|rule| rule.persistence.steps(period_s)).collect();
-        let entries = needed.len() + usize::from(loaded.reward.is_some());
+    pub(crate) fn new(compiled: Arc<CompiledScript>, period_s: f64, beams: usize) -> Self {
+        let needed: Vec<u32> = compiled.rules.iter().map(|rule| rule.persistence.steps(period_s)).collect();
+        let entries = needed.len() + usize::from(compiled.reward.is_some());
         let facts = Arc::new(Facts { ranges_m: vec![0.0; beams], ..Facts::default() });
-        let calibrated = loaded.calibrate.is_none().then(Arc::default);
+        let calibrated = compiled.calibrate.is_none().then(Arc::default);
         let (held, fired) = (vec![0; needed.len()], vec![None; entries]);
-        let built_up = loaded.rules.iter().zip(&needed).map(|(rule, needed)| match rule.fixed_value() {
+        let built_up = compiled.rules.iter().zip(&needed).map(|(rule, needed)| match rule.fixed_value() {
             Some(value) if *needed > 1 => value / f64::from(*needed),
             _ => 0.0,
         });
         let built_up = built_up.collect();
-        let present = Present { loaded, facts, calibrated, slots: Vec::new() };
+        let present = Present { compiled, facts, calibrated, slots: Vec::new() };
         Self { present, beams, needed, held, built_up, fired }
     }
 
@@ -58,9 +58,9 @@ impl Judge {
     /// If it fails, or its result is not what the rules need.
     pub fn calibrate(&mut self) -> Result<()> {
         let present = &mut self.present;
-        let loaded = Arc::clone(&present.loaded);
-        let source = &loaded.source;
-        let Some(span) = loaded.calibrate.clone() else { return Ok(()) };
+        let compiled = Arc::clone(&present.compiled);
+        let source = &compiled.source;
+        let Some(span) = compiled.calibrate.clone() else { return Ok(()) };
         let result = plain(present.call("calibrate")?);
         let is_kept = number(&result).is_some() || result.is_bool() || result.is_array() || result.is_map();
         if !is_kept {
@@ -72,8 +72,8 @@ impl Judge {
             .at(source, span, "defined here")
             .fail();
         }
-        present.slots = loaded.needs.slots.iter().map(|key| slot(&result, key)).collect();
-        for wanted in &loaded.needs.slot_uses {
+        present.slots = compiled.needs.slots.iter().map(|key| slot(&result, key)).collect();
+        for wanted in &compiled.needs.slot_uses {
             let message = match (&present.slots[wanted.slot], wanted.length) {
                 (Slot::Number(_), None) => continue,
                 (Slot::Numbers(values), Some(length)) if values.len() == length => continue,
@@ -96,7 +96,7 @@ impl Judge {
         let Self { present, held, needed, fired, .. } = self;
         fired.fill(None);
         let mut judgement = Judgement::default();
-        let rules = &present.loaded.rules;
+        let rules = &present.compiled.rules;
         for (index, rule) in rules.iter().enumerate() {
             if !present.condition(rule)? {
                 held[index] = 0;
@@ -118,7 +118,7 @@ impl Judge {
                 return Ok(judgement);
             }
         }
-        if let Some(span) = &present.loaded.reward {
+        if let Some(span) = &present.compiled.reward {
             let own = present.reward(span)?;
             if !own.reward.is_finite() {
                 return present.not_finite("'fn reward'", own.reward, span.clone()).fail();
@@ -145,14 +145,14 @@ impl Judge {
 
     /// What the condition of a rule reads in the present facts, part by part.
     #[must_use]
-    pub fn evidence(&self, rule: usize) -> Vec<Evidence> {
+    pub fn evidence(&self, rule: usize) -> Vec<PartRead> {
         self.present.parts(rule).iter().map(|part| part.evidence(self.present.inputs())).collect()
     }
 
     /// Whether a rule's condition holds in the present facts; false where it fails.
     #[must_use]
     pub fn holds(&self, rule: usize) -> bool {
-        let rule = self.present.loaded.rules.get(rule);
+        let rule = self.present.compiled.rules.get(rule);
         rule.is_some_and(|rule| self.present.condition(rule).unwrap_or(false))
     }
 
@@ -184,7 +184,7 @@ impl Judge {
         if self.present.calibrated.is_none() {
             return wrong("the script has not been calibrated yet".to_owned()).fail();
         }
-        self.present.loaded.check_cells(self.present.facts.grid)
+        self.present.compiled.check_cells(self.present.facts.grid)
     }
 
     pub(crate) fn present(&self) -> &Present {

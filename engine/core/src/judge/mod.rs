@@ -4,6 +4,7 @@
 //! judging of it: counters, and what was calibrated. Conditions and values are small native trees; what was not understood
 //! is left to the interpreter, inside limits that are counted, never timed.
 
+pub(crate) mod compiled;
 pub(crate) mod evaluate;
 pub(crate) mod explain;
 pub(crate) mod expression;
@@ -12,7 +13,6 @@ pub(crate) mod fact_table;
 pub(crate) mod facts;
 pub(crate) mod functions;
 mod judging;
-pub(crate) mod loaded;
 pub(crate) mod needs;
 pub(crate) mod reach;
 pub(crate) mod readings;
@@ -27,5 +27,5 @@ pub use fact_columns::{Reach, Unit};
 pub use fact_table::{Fact, FactId};
 pub use facts::Facts;
 pub use judging::Judge;
-pub use readings::{Evidence, FactRead};
+pub use readings::{FactRead, PartRead};
 pub use rule::RuleText;

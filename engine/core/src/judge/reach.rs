@@ -4,7 +4,7 @@ use super::expression::{Arithmetic, Comparison, Flag, Number};
 use super::fact_columns::Reach;
 use super::fact_table::FactId;
 use super::facts::{Facts, decimal};
-use super::rule::{Clause, Rule};
+use super::rule::{Clause, CompiledRule};
 use crate::diagnostic::{Diagnostic, Result, SourceText};
 use crate::settings::LaserSettings;
 
@@ -54,7 +54,7 @@ impl Limits {
 ///
 /// # Errors
 /// If it never can, with the values that it would have to take.
-pub(crate) fn check_rule(source: &SourceText, rule: &Rule, limits: &Limits) -> Result<()> {
+pub(crate) fn check_rule(source: &SourceText, rule: &CompiledRule, limits: &Limits) -> Result<()> {
     let Clause::Native(condition) = &rule.condition else { return Ok(()) };
     let Some(why) = impossible(condition, limits) else { return Ok(()) };
     let help = match limits.laser.tilt_deg > 0.0 {

@@ -1,6 +1,6 @@
 //! What a condition reads, part by part: so that a reward can name the fact and the beam behind it.
 
-use super::expression::{Flag, Inputs, Slot, Typed};
+use super::expression::{Flag, Slot, StepFacts, Typed};
 use super::fact_columns::Beam;
 use super::fact_table::{Fact, FactId};
 use super::facts::{decimal, greatest, least};
@@ -8,7 +8,7 @@ use std::ops::Range;
 
 /// A part of a condition, with what it read in one step.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Evidence {
+pub struct PartRead {
     /// Its bytes in the script.
     pub span: Range<usize>,
     /// Whether it held; nothing where only the whole condition was judged.
@@ -47,12 +47,12 @@ pub(crate) struct Reading {
     pub typed: Typed,
     /// Nothing for what was calibrated.
     pub id: Option<FactId>,
-    pub look: Look,
+    pub look: BeamSought,
 }
 
 /// Which beam to name.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Look {
+pub(crate) enum BeamSought {
     Nowhere,
     One(usize),
     Middle,
@@ -67,18 +67,18 @@ pub(crate) const ALL: (usize, usize) = (0, usize::MAX);
 
 impl Part {
     /// What it read.
-    pub(crate) fn evidence(&self, inputs: Inputs<'_>) -> Evidence {
+    pub(crate) fn evidence(&self, inputs: StepFacts<'_>) -> PartRead {
         let facts = self.readings.iter().filter_map(|reading| reading.read(inputs)).collect();
-        Evidence { span: self.span.clone(), holds: self.holds(inputs), facts }
+        PartRead { span: self.span.clone(), holds: self.holds(inputs), facts }
     }
 
-    fn holds(&self, inputs: Inputs<'_>) -> Option<bool> {
+    fn holds(&self, inputs: StepFacts<'_>) -> Option<bool> {
         self.flag.as_ref().map(|flag| flag.holds(inputs))
     }
 }
 
 /// The first beam that a condition's parts name, those that do not hold left out. Allocates nothing.
-pub(crate) fn beam(parts: &[Part], inputs: Inputs<'_>) -> Option<usize> {
+pub(crate) fn beam(parts: &[Part], inputs: StepFacts<'_>) -> Option<usize> {
     let holding = parts.iter().filter(|part| part.holds(inputs) != Some(false));
     holding.flat_map(|part| &part.readings).find_map(|reading| reading.look.beam(inputs))
 }
@@ -87,10 +87,10 @@ impl Reading {
     /// A fact that is read without arguments, by its whole name; nothing for others.
     pub(crate) fn of_fact(fact: &Fact) -> Option<Self> {
         let typed = Typed::of_fact(fact)?;
-        Some(Self { name: fact.name(), typed, id: Some(fact.id), look: Look::of(fact.beam, ALL) })
+        Some(Self { name: fact.name(), typed, id: Some(fact.id), look: BeamSought::of(fact.beam, ALL) })
     }
 
-    fn read(&self, inputs: Inputs<'_>) -> Option<FactRead> {
+    fn read(&self, inputs: StepFacts<'_>) -> Option<FactRead> {
         let value = match &self.typed {
             Typed::Number(number) | Typed::Whole(number) => number.value(inputs),
             Typed::Flag(flag) => f64::from(u8::from(flag.holds(inputs))),
@@ -102,7 +102,7 @@ impl Reading {
     }
 }
 
-impl Look {
+impl BeamSought {
     /// For a fact of the beams `from` to `to`; what an expression gives too (a beam, expected ranges) is not known here.
     pub(crate) const fn of(beam: Beam, (from, to): (usize, usize)) -> Self {
         match beam {
@@ -115,7 +115,7 @@ impl Look {
         }
     }
 
-    fn beam(self, inputs: Inputs<'_>) -> Option<usize> {
+    fn beam(self, inputs: StepFacts<'_>) -> Option<usize> {
         let ranges_m = &inputs.facts.ranges_m;
         let last = ranges_m.len().checked_sub(1)?;
         let find = |from: usize, to: usize, choose: fn(&[f32]) -> f32| {

@@ -55,7 +55,7 @@ pub(crate) struct ScriptClause {
 
 /// A rule, ready to be judged.
 #[derive(Debug)]
-pub(crate) struct Rule {
+pub(crate) struct CompiledRule {
     pub text: RuleText,
     pub condition: Clause<Flag>,
     pub condition_span: Range<usize>,
@@ -67,7 +67,7 @@ pub(crate) struct Rule {
     pub parts: Vec<Part>,
 }
 
-impl Rule {
+impl CompiledRule {
     /// What it adds whenever it fires; nothing if that depends on the step.
     pub(crate) fn fixed_value(&self) -> Option<f64> {
         match self.value {

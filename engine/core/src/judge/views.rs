@@ -6,10 +6,10 @@ use super::facts::{self, Facts};
 use rhai::{Dynamic, Engine, EvalAltResult, Position, Variant};
 use std::sync::Arc;
 
-type Checked<T> = Result<T, Box<EvalAltResult>>;
+type Evaluated<T> = Result<T, Box<EvalAltResult>>;
 
 /// A group of facts as a script's variable.
-pub(crate) trait View: Variant + Clone {
+pub(crate) trait FactView: Variant + Clone {
     /// The group's name.
     const GROUP: &'static str;
     /// The handle on these measurements.
@@ -23,7 +23,7 @@ macro_rules! views {
         $($(#[$doc])* #[derive(Clone)]
         pub(crate) struct $name(Arc<Facts>);
 
-        impl View for $name {
+        impl FactView for $name {
             const GROUP: &'static str = $group;
             fn new(facts: Arc<Facts>) -> Self {
                 Self(facts)
@@ -35,8 +35,8 @@ macro_rules! views {
 
         /// Makes every group known to an engine.
         fn register_groups(engine: &mut Engine) {
-            engine.register_type_with_name::<All>("facts");
-            engine.register_get("calibrated", |all: &mut All| Dynamic::clone(&all.calibrated));
+            engine.register_type_with_name::<AllFacts>("facts");
+            engine.register_get("calibrated", |all: &mut AllFacts| Dynamic::clone(&all.calibrated));
             $(register_group::<$name>(engine);)*
         }
 
@@ -52,27 +52,27 @@ macro_rules! views {
 
 views! {
     /// `laser`
-    Laser "laser",
+    LaserView "laser",
     /// `camera`
-    Camera "camera",
+    CameraView "camera",
     /// `action`
-    Action "action",
+    ActionView "action",
     /// `robot`
-    Robot "robot",
+    RobotView "robot",
     /// `state`
-    State "state",
+    StateView "state",
     /// `time`
-    Time "time",
+    TimeView "time",
 }
 
 /// `facts`: all groups, and what `fn calibrate` returned.
 #[derive(Clone)]
-pub(crate) struct All {
+pub(crate) struct AllFacts {
     facts: Arc<Facts>,
     calibrated: Arc<Dynamic>,
 }
 
-impl All {
+impl AllFacts {
     /// The handle on these measurements.
     pub(crate) fn new(facts: &Arc<Facts>, calibrated: &Arc<Dynamic>) -> Self {
         Self { facts: Arc::clone(facts), calibrated: Arc::clone(calibrated) }
@@ -81,13 +81,13 @@ impl All {
 
 /// `laser.sector(from, to)`.
 #[derive(Clone)]
-struct Sector {
+struct SectorView {
     facts: Arc<Facts>,
     from: usize,
     to: usize,
 }
 
-impl Sector {
+impl SectorView {
     fn ranges(&self) -> &[f32] {
         self.facts.sector_m(self.from, self.to)
     }
@@ -101,16 +101,16 @@ pub(crate) fn register(engine: &mut Engine) {
     register_groups(engine);
     register_laser(engine);
     register_sector(engine);
-    engine.register_fn("cell", |camera: &mut Camera, row: i64, column: i64| -> Checked<f64> {
+    engine.register_fn("cell", |camera: &mut CameraView, row: i64, column: i64| -> Evaluated<f64> {
         let (rows, columns) = camera.0.grid;
         let row = index(row, rows, "row numbers")?;
         Ok(camera.0.cell(row, index(column, columns, "column numbers")?))
     });
 }
 
-fn register_group<T: View>(engine: &mut Engine) {
+fn register_group<T: FactView>(engine: &mut Engine) {
     engine.register_type_with_name::<T>(T::GROUP);
-    engine.register_get(T::GROUP, |all: &mut All| T::new(Arc::clone(&all.facts)));
+    engine.register_get(T::GROUP, |all: &mut AllFacts| T::new(Arc::clone(&all.facts)));
     for fact in FACTS.iter().filter(|fact| fact.group == T::GROUP) {
         match fact.get {
             Getter::Number(get) => engine.register_get(fact.key, move |view: &mut T| get(view.facts())),
@@ -122,31 +122,31 @@ fn register_group<T: View>(engine: &mut Engine) {
 }
 
 fn register_laser(engine: &mut Engine) {
-    engine.register_indexer_get(|laser: &mut Laser, beam: i64| -> Checked<f64> {
+    engine.register_indexer_get(|laser: &mut LaserView, beam: i64| -> Evaluated<f64> {
         let beam = index(beam, laser.0.ranges_m.len(), "beam numbers")?;
         Ok(laser.0.beam_m(beam))
     });
-    engine.register_fn("sector", |laser: &mut Laser, from: i64, to: i64| -> Checked<Sector> {
+    engine.register_fn("sector", |laser: &mut LaserView, from: i64, to: i64| -> Evaluated<SectorView> {
         let count = laser.0.ranges_m.len();
         let (from, to) = (index(from, count, "beam numbers")?, index(to, count, "beam numbers")?);
         if from > to {
             return Err(fault(format!("a sector runs from the lower beam to the higher one, found {from} to {to}")));
         }
-        Ok(Sector { facts: Arc::clone(&laser.0), from, to })
+        Ok(SectorView { facts: Arc::clone(&laser.0), from, to })
     });
-    compare(engine, |laser: &Laser| facts::decimal(facts::least(&laser.0.ranges_m)));
+    compare(engine, |laser: &LaserView| facts::decimal(facts::least(&laser.0.ranges_m)));
 }
 
 fn register_sector(engine: &mut Engine) {
-    engine.register_type_with_name::<Sector>("sector");
+    engine.register_type_with_name::<SectorView>("sector");
     for fact in FACTS {
         if let Getter::Sector(get) = fact.get {
-            engine.register_get(fact.key, move |sector: &mut Sector| get(sector.ranges()));
+            engine.register_get(fact.key, move |sector: &mut SectorView| get(sector.ranges()));
         }
     }
-    engine.register_fn("count_below", |sector: &mut Sector, limit_m: f64| below(sector, limit_m));
-    engine.register_fn("count_below", |sector: &mut Sector, limit_m: i64| below(sector, limit_m as f64));
-    engine.register_fn("excess", |sector: &mut Sector, expected: rhai::Array| -> Checked<f64> {
+    engine.register_fn("count_below", |sector: &mut SectorView, limit_m: f64| below(sector, limit_m));
+    engine.register_fn("count_below", |sector: &mut SectorView, limit_m: i64| below(sector, limit_m as f64));
+    engine.register_fn("excess", |sector: &mut SectorView, expected: rhai::Array| -> Evaluated<f64> {
         let ranges = sector.ranges();
         let expected: Option<Vec<f64>> = expected.iter().map(number).collect();
         match expected {
@@ -155,7 +155,7 @@ fn register_sector(engine: &mut Engine) {
             None => Err(fault("'excess' needs an array of numbers".to_owned())),
         }
     });
-    compare(engine, Sector::nearest);
+    compare(engine, SectorView::nearest);
 }
 
 /// The message for an array of expected ranges that does not fit its sector.
@@ -163,7 +163,7 @@ pub(crate) fn wrong_length(beams: usize, found: usize) -> String {
     format!("'excess' needs one expected range for each of the {beams} beams of its sector, found {found}")
 }
 
-fn below(sector: &Sector, limit_m: f64) -> i64 {
+fn below(sector: &SectorView, limit_m: f64) -> i64 {
     facts::count_below(sector.ranges(), limit_m) as i64
 }
 
@@ -172,7 +172,7 @@ pub(crate) fn number(value: &Dynamic) -> Option<f64> {
     value.as_float().ok().or_else(|| value.as_int().ok().map(|whole| whole as f64))
 }
 
-fn index(wanted: i64, count: usize, what: &str) -> Checked<usize> {
+fn index(wanted: i64, count: usize, what: &str) -> Evaluated<usize> {
     usize::try_from(wanted)
         .ok()
         .filter(|&index| index < count)

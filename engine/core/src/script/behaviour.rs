@@ -1,9 +1,9 @@
 //! A script, loaded and checked.
 
-use super::outline::Outline;
-use super::setup::Places;
+use super::outline::ScriptOutline;
+use super::setup::SettingPlaces;
 use crate::diagnostic::{Mistakes, Result, SourceText};
-use crate::judge::loaded::Loaded;
+use crate::judge::compiled::CompiledScript;
 use crate::judge::{Judge, RuleText, reach};
 use crate::settings::{LaserSettings, Settings};
 use std::ops::Range;
@@ -14,39 +14,35 @@ use std::sync::Arc;
 pub struct Behaviour {
     name: String,
     settings: Settings,
-    places: Places,
+    places: SettingPlaces,
     rules: Vec<RuleText>,
-    outline: Outline,
-    loaded: Arc<Loaded>,
+    outline: ScriptOutline,
+    compiled: Arc<CompiledScript>,
 }
 
 impl Behaviour {
-    pub(super) fn new(name: &str, settings: Settings, places: Places, outline: Outline, loaded: Loaded) -> Self {
-        let mut rules: Vec<RuleText> = loaded.rules.iter().map(|rule| rule.text.clone()).collect();
-        let source = &loaded.source;
-        rules.extend(loaded.reward.clone().map(|span| {
+    pub(super) fn new(
+        name: &str,
+        settings: Settings,
+        places: SettingPlaces,
+        outline: ScriptOutline,
+        compiled: CompiledScript,
+    ) -> Self {
+        let mut rules: Vec<RuleText> = compiled.rules.iter().map(|rule| rule.text.clone()).collect();
+        let source = &compiled.source;
+        rules.extend(compiled.reward.clone().map(|span| {
             let (line, _) = source.position(span.start);
             let text = source.text[source.line_range(line)].trim().to_owned();
             RuleText { name: "reward".to_owned(), line, text }
         }));
-        Self { name: name.to_owned(), settings, places, rules, outline, loaded: Arc::new(loaded) }
+        Self { name: name.to_owned(), settings, places, rules, outline, compiled: Arc::new(compiled) }
     }
 
-    /// Checks that every rule can fire with this laser, on a floor at most `drop_m` metres below the robot's own ground;
-    /// infinite where that is not known.
-    ///
-    /// # Errors
-    /// `E-SCRIPT-RULE` at the condition of every rule that never can.
-    pub fn check_reach(&self, laser: &LaserSettings, drop_m: f64) -> Result<()> {
-        let mut mistakes = Mistakes::new(self.source());
-        self.find_unreachable(laser, drop_m, &mut mistakes);
-        mistakes.end()
-    }
-
-    /// Adds every rule that can never fire, unless there is a mistake in its condition already.
+    /// Adds every rule that can never fire with this laser, on a floor at most `drop_m` metres below the robot's own
+    /// ground (infinite where that is not known), unless there is a mistake in its condition already.
     pub(crate) fn find_unreachable(&self, laser: &LaserSettings, drop_m: f64, mistakes: &mut Mistakes) {
         let (limits, source) = (reach::Limits::new(laser, drop_m), self.source());
-        for rule in &self.loaded.rules {
+        for rule in &self.compiled.rules {
             if !mistakes.within(source, &rule.condition_span) {
                 mistakes.take(reach::check_rule(source, rule, &limits));
             }
@@ -62,7 +58,7 @@ impl Behaviour {
     /// The text.
     #[must_use]
     pub fn source(&self) -> &SourceText {
-        &self.loaded.source
+        &self.compiled.source
     }
 
     /// What the set-up calls said, over the defaults.
@@ -85,14 +81,14 @@ impl Behaviour {
 
     /// What it says, for whoever looks for mistakes in it.
     #[must_use]
-    pub fn outline(&self) -> &Outline {
+    pub fn outline(&self) -> &ScriptOutline {
         &self.outline
     }
 
     /// What a rule adds whenever it fires; nothing if that depends on the step, as with `fn reward`.
     #[must_use]
     pub fn fixed_value(&self, rule: usize) -> Option<f64> {
-        self.loaded.rules.get(rule)?.fixed_value()
+        self.compiled.rules.get(rule)?.fixed_value()
     }
 
     /// A judge with fresh counters, for one seed; `period_s` is the time between two steps, in seconds.
@@ -100,16 +96,16 @@ impl Behaviour {
     /// # Errors
     /// If a rule names a beam that a laser with `beams` beams does not have.
     pub fn judge(&self, period_s: f64, beams: usize) -> Result<Judge> {
-        self.loaded.check_beams(beams)?;
+        self.compiled.check_beams(beams)?;
         Ok(self.unchecked_judge(period_s, beams))
     }
 
     /// A judge for rules that may name beams that the laser does not have: these must not be judged.
     pub(super) fn unchecked_judge(&self, period_s: f64, beams: usize) -> Judge {
-        Judge::new(Arc::clone(&self.loaded), period_s, beams)
+        Judge::new(Arc::clone(&self.compiled), period_s, beams)
     }
 
-    pub(super) fn loaded(&self) -> &Loaded {
-        &self.loaded
+    pub(super) fn compiled(&self) -> &CompiledScript {
+        &self.compiled
     }
 }

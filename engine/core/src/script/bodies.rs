@@ -1,36 +1,36 @@
 //! The outline of a script: its rules, what stands in its functions, and which names are used at all.
 
-use super::chain::{Chain, Link};
-use super::outline::{BeamLoop, Gathers, Outline, UnusedName};
+use super::access::{Access, Link};
+use super::outline::{BeamLoop, Gathers, ScriptOutline, UnusedName};
 use super::positions::body_end;
-use super::reader::{Local, Reader};
+use super::reader::{Local, OutlineReader};
 use super::source::Code;
 use super::syntax::written_rules;
 use crate::judge::fact_table::is_group;
-use crate::judge::rule::Rule;
+use crate::judge::rule::CompiledRule;
 use rhai::{AST, ASTNode, Expr, Scope, Stmt};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 /// A function: its name, the bytes of its name, and where its body ends.
-struct Function {
+struct OwnFunction {
     name: String,
     span: Range<usize>,
     end: usize,
 }
 
 /// The outline of a script without a mistake, with its compiled rules.
-pub(super) fn outline_of(code: &Code, ast: &AST, constants: &Scope<'static>, rules: &[Rule]) -> Outline {
-    let reader = Reader { code, constants };
+pub(super) fn outline_of(code: &Code, ast: &AST, constants: &Scope<'static>, rules: &[CompiledRule]) -> ScriptOutline {
+    let reader = OutlineReader { code, constants };
     let written = written_rules(ast.statements());
     let rules = rules.iter().zip(&written).map(|(rule, written)| reader.rule(rule, written)).collect();
-    let mut outline = Outline { rules, ..Outline::default() };
+    let mut outline = ScriptOutline { rules, ..ScriptOutline::default() };
     read(&reader, ast, &mut outline);
     outline
 }
 
 /// Reads all functions, and which names the whole script uses.
-fn read(reader: &Reader<'_>, ast: &AST, outline: &mut Outline) {
+fn read(reader: &OutlineReader<'_>, ast: &AST, outline: &mut ScriptOutline) {
     let functions = functions(reader, ast);
     let reached = reached(reader, &functions);
     let bodies = ast.clone_functions_only();
@@ -73,13 +73,13 @@ fn read(reader: &Reader<'_>, ast: &AST, outline: &mut Outline) {
     outline.unused = unused(reader, ast, &functions);
 }
 
-fn functions(reader: &Reader<'_>, ast: &AST) -> Vec<Function> {
+fn functions(reader: &OutlineReader<'_>, ast: &AST) -> Vec<OwnFunction> {
     let names = ast.iter_functions().map(|function| function.name.to_owned());
-    let mut functions: Vec<Function> = names
+    let mut functions: Vec<OwnFunction> = names
         .filter_map(|name| {
             let span = reader.code.function(&name)?;
             let end = body_end(&reader.code.plain, span.start);
-            Some(Function { name, span, end })
+            Some(OwnFunction { name, span, end })
         })
         .collect();
     functions.sort_by_key(|function| function.span.start);
@@ -87,7 +87,7 @@ fn functions(reader: &Reader<'_>, ast: &AST) -> Vec<Function> {
 }
 
 /// `fn reward` and every function that it calls, directly or not.
-fn reached<'a>(reader: &Reader<'_>, functions: &'a [Function]) -> BTreeSet<&'a str> {
+fn reached<'a>(reader: &OutlineReader<'_>, functions: &'a [OwnFunction]) -> BTreeSet<&'a str> {
     let mut reached = BTreeSet::from(["reward"]);
     loop {
         let texts: Vec<&str> = functions
@@ -106,7 +106,7 @@ fn reached<'a>(reader: &Reader<'_>, functions: &'a [Function]) -> BTreeSet<&'a s
 }
 
 /// Local variables that stand for a fact or a number and are never assigned again, by function and name.
-fn locals(reader: &Reader<'_>, bodies: &AST, functions: &[Function]) -> BTreeMap<(String, String), Local> {
+fn locals(reader: &OutlineReader<'_>, bodies: &AST, functions: &[OwnFunction]) -> BTreeMap<(String, String), Local> {
     let mut locals = BTreeMap::new();
     let mut spoilt = BTreeSet::new();
     bodies.walk(&mut |path: &[ASTNode<'_>]| {
@@ -124,8 +124,8 @@ fn locals(reader: &Reader<'_>, bodies: &AST, functions: &[Function]) -> BTreeMap
                 }
             }
             Stmt::Assignment(assignment) => {
-                if let Some(chain) = Chain::of(&assignment.1.lhs) {
-                    spoilt.insert((function.name.clone(), chain.root.to_owned()));
+                if let Some(access) = Access::of(&assignment.1.lhs) {
+                    spoilt.insert((function.name.clone(), access.root.to_owned()));
                 }
             }
             _ => {}
@@ -141,9 +141,9 @@ fn group(expr: &Expr) -> Option<String> {
     if !matches!(expr, Expr::Dot(..) | Expr::Index(..) | Expr::Variable(..)) {
         return None;
     }
-    let chain = Chain::of(expr)?;
-    match chain.links.first() {
-        _ if is_group(chain.root) => Some(chain.root.to_owned()),
+    let access = Access::of(expr)?;
+    match access.links.first() {
+        _ if is_group(access.root) => Some(access.root.to_owned()),
         Some(Link::Property(group, _)) if is_group(group) => Some((*group).to_owned()),
         // Facts handed to another function as a whole are told apart there.
         _ => None,
@@ -166,12 +166,12 @@ fn recovers(expr: &Expr) -> bool {
 }
 
 /// The loop around the last node, if that reads a single beam of the laser.
-fn beam_loop(reader: &Reader<'_>, path: &[ASTNode<'_>]) -> Option<BeamLoop> {
+fn beam_loop(reader: &OutlineReader<'_>, path: &[ASTNode<'_>]) -> Option<BeamLoop> {
     let of_laser = |expr: &Expr| {
-        let chain = Chain::of(expr)?;
-        let at = if chain.root == "laser" { 0 } else { 1 };
-        let laser = at == 0 || matches!(chain.links.first(), Some(Link::Property("laser", _)));
-        match chain.links.get(at) {
+        let access = Access::of(expr)?;
+        let at = if access.root == "laser" { 0 } else { 1 };
+        let laser = at == 0 || matches!(access.links.first(), Some(Link::Property("laser", _)));
+        match access.links.get(at) {
             // A beam that is a plain number is the same one in each turn.
             Some(Link::Index(beam)) if laser => Some(!matches!(beam, Expr::IntegerConstant(..))),
             _ => None,
@@ -203,7 +203,7 @@ fn beam_loop(reader: &Reader<'_>, path: &[ASTNode<'_>]) -> Option<BeamLoop> {
 }
 
 /// The first and the last of `from..=to` or `from..to`.
-fn range(reader: &Reader<'_>, expr: &Expr) -> Option<(i64, i64)> {
+fn range(reader: &OutlineReader<'_>, expr: &Expr) -> Option<(i64, i64)> {
     let whole = |expr: &Expr| reader.number(expr, &|_| None).map(|value| value as i64);
     match expr {
         Expr::DynamicConstant(value, _) => {
@@ -231,7 +231,7 @@ fn uses(text: &str, name: &str) -> usize {
     text.match_indices(name).filter(|(at, _)| whole(*at)).count()
 }
 
-fn unused(reader: &Reader<'_>, ast: &AST, functions: &[Function]) -> Vec<UnusedName> {
+fn unused(reader: &OutlineReader<'_>, ast: &AST, functions: &[OwnFunction]) -> Vec<UnusedName> {
     let (plain, source) = (&reader.code.plain, &reader.code.source);
     let once = |name: &str| uses(plain, name) <= 1;
     let mut found: Vec<UnusedName> = Vec::new();

@@ -1,6 +1,6 @@
 //! From the script's tree to a native one; what is not understood stays with the interpreter.
 
-use super::chain::{Chain, Link};
+use super::access::{Access, Link};
 use crate::judge::expression::{Arithmetic, Comparison, Flag, Number, Typed};
 use crate::judge::fact_columns::Getter;
 use crate::judge::fact_table::{FactId, value};
@@ -61,11 +61,11 @@ impl Compiler<'_> {
     }
 
     fn variable(&mut self, expr: &Expr) -> Option<Typed> {
-        let chain = Chain::of(expr)?;
-        if chain.root == "calibrated" {
-            return Some(Typed::Number(self.calibrated(String::new(), None, chain.position)));
+        let access = Access::of(expr)?;
+        if access.root == "calibrated" {
+            return Some(Typed::Number(self.calibrated(String::new(), None, access.position)));
         }
-        let value = self.constants.get(chain.root)?;
+        let value = self.constants.get(access.root)?;
         if let Ok(value) = value.as_float() {
             return Some(Typed::Number(Number::Constant(value)));
         }
@@ -87,8 +87,8 @@ impl Compiler<'_> {
     }
 
     /// `calibrated` or `calibrated.key`.
-    fn calibrated_key(chain: &Chain<'_>) -> Option<String> {
-        match chain.group()? {
+    fn calibrated_key(access: &Access<'_>) -> Option<String> {
+        match access.group()? {
             ("calibrated", []) => Some(String::new()),
             ("calibrated", [Link::Property(key, _)]) => Some((*key).to_owned()),
             _ => None,
@@ -96,11 +96,11 @@ impl Compiler<'_> {
     }
 
     fn fact(&mut self, expr: &Expr) -> Option<Typed> {
-        let chain = Chain::of(expr)?;
-        if let Some(key) = Self::calibrated_key(&chain) {
-            return Some(Typed::Number(self.calibrated(key, None, chain.position)));
+        let access = Access::of(expr)?;
+        if let Some(key) = Self::calibrated_key(&access) {
+            return Some(Typed::Number(self.calibrated(key, None, access.position)));
         }
-        let (group, links) = chain.group()?;
+        let (group, links) = access.group()?;
         match (group, links) {
             (_, [Link::Property(key, _)]) => Typed::of_fact(value(group, key)?),
             ("laser", [Link::Index(beam)]) => Some(Typed::Number(Number::Beam(self.beam(beam)?))),
@@ -148,9 +148,9 @@ impl Compiler<'_> {
 
     /// Where `excess(calibrated)` finds its expected ranges.
     pub(super) fn expected(&mut self, from: usize, to: usize, call: &FnCallExpr) -> Option<usize> {
-        let chain = Chain::of(call.args.first()?)?;
-        let key = Self::calibrated_key(&chain)?;
-        match self.calibrated(key, Some(to - from + 1), chain.position) {
+        let access = Access::of(call.args.first()?)?;
+        let key = Self::calibrated_key(&access)?;
+        match self.calibrated(key, Some(to - from + 1), access.position) {
             Number::Calibrated(slot) => Some(slot),
             _ => None,
         }
@@ -240,8 +240,8 @@ impl Compiler<'_> {
 
     /// A number; or the laser or a sector, which stand for their nearest range.
     pub(super) fn range(&mut self, expr: &Expr) -> Option<Number> {
-        let chain = Chain::of(expr);
-        match chain.as_ref().and_then(Chain::group) {
+        let access = Access::of(expr);
+        match access.as_ref().and_then(Access::group) {
             Some(("laser", [])) => number(Typed::of_fact(FactId::LaserNearest.fact())?),
             Some(("laser", [Link::Call(call, _)])) => {
                 let (from, to) = self.sector(call)?;

@@ -3,7 +3,7 @@
 use super::behaviour::Behaviour;
 use super::bodies::outline_of;
 use super::compile::Compiler;
-use super::outline::Outline;
+use super::outline::ScriptOutline;
 use super::rules::rules;
 use super::setup::{self, Log, SetUp};
 use super::source::{self, Code};
@@ -12,7 +12,7 @@ use super::tree::tree;
 use super::unread::Unread;
 use super::{names, parts, rehearsal, syntax, top_level};
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, printable};
-use crate::judge::loaded::Loaded;
+use crate::judge::compiled::CompiledScript;
 use crate::judge::needs::Needs;
 use crate::judge::sandbox;
 use crate::settings::Settings;
@@ -100,11 +100,11 @@ impl Draft {
         let reward_parts = reward.as_ref().map_or_else(Vec::new, |span| parts(span, &mut needs));
         let outline = match mistakes.is_empty() {
             true => outline_of(code, &tree.ast, &constants, &rules),
-            false => Outline::default(),
+            false => ScriptOutline::default(),
         };
         let (source, ast) = (code.source.clone(), tree.ast);
-        let loaded = Loaded { source, engine, ast, constants, rules, needs, reward, reward_parts, calibrate };
-        let behaviour = Behaviour::new(name, settings, places, outline, loaded);
+        let compiled = CompiledScript { source, engine, ast, constants, rules, needs, reward, reward_parts, calibrate };
+        let behaviour = Behaviour::new(name, settings, places, outline, compiled);
         check_with_settings(&behaviour, &mut spoilt, &unread, mistakes)?;
         Ok((behaviour, unread))
     }
@@ -136,19 +136,19 @@ fn check_with_settings(
     unread: &Unread,
     mistakes: &mut Mistakes,
 ) -> std::result::Result<(), Diagnostic> {
-    let (Settings { run, laser, grid, .. }, loaded) = (behaviour.settings(), behaviour.loaded());
+    let (Settings { run, laser, grid, .. }, compiled) = (behaviour.settings(), behaviour.compiled());
     let beams = laser.beams as usize;
     if !unread.has("laser", "beams") {
-        mistakes.take(loaded.check_beams(beams));
+        mistakes.take(compiled.check_beams(beams));
     }
     if !unread.has("grid", "rows") && !unread.has("grid", "columns") {
-        mistakes.take(loaded.check_cells((grid.rows as usize, grid.columns as usize)));
+        mistakes.take(compiled.check_cells((grid.rows as usize, grid.columns as usize)));
     }
     if !unread.any_of("laser") {
         behaviour.find_unreachable(laser, f64::INFINITY, mistakes);
     }
     // Rules that name beams of another laser cannot be tried.
-    if unread.has("laser", "beams") && loaded.check_beams(beams).is_err() {
+    if unread.has("laser", "beams") && compiled.check_beams(beams).is_err() {
         return Ok(());
     }
     spoilt.spread(mistakes);

@@ -4,9 +4,9 @@
 //! checked; [`Draft`] is one as far as it can be understood, with its mistakes, and the order of the stages. What is
 //! judged in every step, and how, is the room `judge`.
 
+mod access;
 mod behaviour;
 mod bodies;
-mod chain;
 mod compile;
 mod draft;
 mod names;
@@ -30,7 +30,7 @@ mod unread;
 
 pub use behaviour::Behaviour;
 pub use draft::Draft;
-pub use outline::{BeamLoop, Compared, Condition, Gathers, NamedFact, Outline, RuleOutline, UnusedName};
+pub use outline::{BeamLoop, Compared, Condition, Gathers, NamedFact, RuleOutline, ScriptOutline, UnusedName};
 pub use reference::{definitions, reference};
 pub use unread::Unread;
 

@@ -1,6 +1,6 @@
 //! Every name in a script checked before anything runs: facts, functions, and where a rule may stand.
 
-use super::chain::{Chain, Link};
+use super::access::{Access, Link};
 use super::setup_table::SETUP;
 use super::source::Code;
 use super::spoilt::Spoilt;
@@ -133,7 +133,7 @@ impl Names<'_> {
     }
 
     fn variable(&mut self, expr: &Expr, in_rule: bool) {
-        let Some(Chain { root, is_local: false, position, .. }) = Chain::of(expr) else { return };
+        let Some(Access { root, is_local: false, position, .. }) = Access::of(expr) else { return };
         let is_group = is_group(root);
         if !is_group && !matches!(root, "facts" | "calibrated") {
             let defined = self.variables.as_ref().is_none_or(|known| known.contains(root)) || self.spoilt.has(root);
@@ -205,9 +205,9 @@ impl Names<'_> {
     }
 
     fn is_fact(&self, expr: &Expr) -> bool {
-        let Some(chain) = Chain::of(expr) else { return false };
-        let all = self.facts_names.iter().any(|name| name == chain.root);
-        let group = if all { chain.group_of_facts() } else { chain.group() };
+        let Some(access) = Access::of(expr) else { return false };
+        let all = self.facts_names.iter().any(|name| name == access.root);
+        let group = if all { access.group_of_facts() } else { access.group() };
         group.is_some_and(|(group, _)| is_group(group))
     }
 
@@ -223,19 +223,19 @@ impl Names<'_> {
     }
 
     fn chain(&mut self, expr: &Expr, in_rule: bool) {
-        let Some(chain) = Chain::of(expr) else { return };
-        let is_facts = self.facts_names.iter().any(|name| name == chain.root);
-        let group = match (self.in_function, is_facts && (chain.is_local || in_rule)) {
+        let Some(access) = Access::of(expr) else { return };
+        let is_facts = self.facts_names.iter().any(|name| name == access.root);
+        let group = match (self.in_function, is_facts && (access.is_local || in_rule)) {
             (_, true) => {
-                if let Some(Link::Property(group, position)) = chain.links.first().copied()
+                if let Some(Link::Property(group, position)) = access.links.first().copied()
                     && group != "calibrated"
                     && !is_group(group)
                 {
                     return self.no_group(group, position);
                 }
-                chain.group_of_facts()
+                access.group_of_facts()
             }
-            (false, false) if in_rule && !chain.is_local => chain.group(),
+            (false, false) if in_rule && !access.is_local => access.group(),
             _ => None,
         };
         if let Some((group, links)) = group

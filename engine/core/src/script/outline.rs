@@ -92,7 +92,7 @@ pub struct UnusedName {
 
 /// What a script says.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Outline {
+pub struct ScriptOutline {
     /// The rules in their order.
     pub rules: Vec<RuleOutline>,
     /// Comparisons in functions.
@@ -109,7 +109,7 @@ pub struct Outline {
     pub unused: Vec<UnusedName>,
 }
 
-impl Outline {
+impl ScriptOutline {
     /// Whether anything can ask for recovery.
     #[must_use]
     pub fn recovers(&self) -> bool {

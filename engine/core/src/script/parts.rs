@@ -1,14 +1,14 @@
 //! What a condition reads, found part by part in the script's tree.
 
-use super::chain::{Chain, Link, fact_of};
+use super::access::{Access, Link, fact_of};
 use super::compile::Compiler;
-use super::positions::{body_end, chain_end, first, part_end};
+use super::positions::{access_end, body_end, first, part_end};
 use super::source::Code;
 use crate::judge::explain::offset;
 use crate::judge::expression::Typed;
 use crate::judge::fact_columns::Beam;
 use crate::judge::fact_table::{FACTS, Fact, FactId};
-use crate::judge::readings::{ALL, Look, Part, Reading};
+use crate::judge::readings::{ALL, BeamSought, Part, Reading};
 use rhai::{AST, ASTNode, Expr};
 use std::ops::Range;
 
@@ -80,38 +80,38 @@ fn readings(code: &Code, expr: &Expr, compiler: &mut Compiler<'_>) -> Vec<Readin
 
 /// Adds what an expression reads, with where it begins, if it is one fact.
 fn collect(code: &Code, expr: &Expr, compiler: &mut Compiler<'_>, found: &mut Vec<(usize, Reading)>) {
-    let Some(chain) = Chain::of(expr) else { return };
-    let start = offset(&code.source, chain.position);
+    let Some(access) = Access::of(expr) else { return };
+    let start = offset(&code.source, access.position);
     // The outermost of a chain comes first; its parts begin where it begins.
     if found.iter().any(|(known, _)| *known == start) {
         return;
     }
     let typed = compiler.range(expr).map(Typed::Number).or_else(|| compiler.expression(expr));
-    if let (Some(typed), Some((id, look))) = (typed, describe(&chain, compiler)) {
-        let name = code.source.text[start..chain_end(code, start)].trim_start_matches("facts.").to_owned();
+    if let (Some(typed), Some((id, look))) = (typed, describe(&access, compiler)) {
+        let name = code.source.text[start..access_end(code, start)].trim_start_matches("facts.").to_owned();
         found.push((start, Reading { name, typed, id, look }));
     }
 }
 
 /// Which fact a chain reads, nothing for what was calibrated; and which beam to name with it.
-fn describe(chain: &Chain<'_>, compiler: &mut Compiler<'_>) -> Option<(Option<FactId>, Look)> {
-    let (group, links) = chain.group()?;
+fn describe(access: &Access<'_>, compiler: &mut Compiler<'_>) -> Option<(Option<FactId>, BeamSought)> {
+    let (group, links) = access.group()?;
     if group == "calibrated" {
-        return Some((None, Look::Nowhere));
+        return Some((None, BeamSought::Nowhere));
     }
     let fact = fact_of(group, links)?;
     let look = match (fact.beam, links) {
-        (Beam::Given, [Link::Index(beam)]) => Look::One(compiler.beam(beam)?),
+        (Beam::Given, [Link::Index(beam)]) => BeamSought::One(compiler.beam(beam)?),
         (beam, [Link::Call(call, _), rest @ ..]) if group == "laser" => {
             let (from, to) = compiler.sector(call)?;
             match (beam, rest) {
-                (Beam::Worst, [Link::Call(call, _)]) => {
-                    compiler.expected(from, to, call).map_or(Look::Nowhere, |slot| Look::Worst(from, to, slot))
-                }
-                _ => Look::of(beam, (from, to)),
+                (Beam::Worst, [Link::Call(call, _)]) => compiler
+                    .expected(from, to, call)
+                    .map_or(BeamSought::Nowhere, |slot| BeamSought::Worst(from, to, slot)),
+                _ => BeamSought::of(beam, (from, to)),
             }
         }
-        (beam, _) => Look::of(beam, ALL),
+        (beam, _) => BeamSought::of(beam, ALL),
     };
     Some((Some(fact.id), look))
 }

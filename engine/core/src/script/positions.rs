@@ -89,7 +89,7 @@ pub(super) fn part_end(code: &Code, start: usize) -> usize {
 }
 
 /// Where a fact with its path ends.
-pub(super) fn chain_end(code: &Code, start: usize) -> usize {
+pub(super) fn access_end(code: &Code, start: usize) -> usize {
     let part = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '(' | '[');
     end(code, start, |tail| !tail.starts_with(part))
 }

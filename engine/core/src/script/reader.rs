@@ -1,6 +1,6 @@
 //! Expressions of a script read for its outline: conditions, comparisons, numbers, facts.
 
-use super::chain::{Chain, Link, fact_of};
+use super::access::{Access, Link, fact_of};
 use super::outline::{Compared, Condition, NamedFact, RuleOutline};
 use super::positions::{first, line_end};
 use super::source::Code;
@@ -8,18 +8,18 @@ use super::syntax::WrittenRule;
 use crate::judge::explain::offset;
 use crate::judge::expression::{Arithmetic, Comparison};
 use crate::judge::fact_table::{FactId, is_group};
-use crate::judge::rule::Rule;
+use crate::judge::rule::CompiledRule;
 use rhai::{Expr, Position, Scope};
 
 /// Reads expressions of one script.
-pub(super) struct Reader<'a> {
+pub(super) struct OutlineReader<'a> {
     pub code: &'a Code,
     pub constants: &'a Scope<'static>,
 }
 
-impl Reader<'_> {
+impl OutlineReader<'_> {
     /// The outline of one rule.
-    pub(super) fn rule(&self, rule: &Rule, written: &WrittenRule<'_>) -> RuleOutline {
+    pub(super) fn rule(&self, rule: &CompiledRule, written: &WrittenRule<'_>) -> RuleOutline {
         RuleOutline {
             condition: self.condition(written.condition),
             condition_span: rule.condition_span.clone(),
@@ -72,7 +72,7 @@ impl Reader<'_> {
             _ => None,
         };
         let fact =
-            self.fact(fact).or_else(|| Chain::of(fact).filter(|c| c.links.is_empty()).and_then(|c| named(c.root)))?;
+            self.fact(fact).or_else(|| Access::of(fact).filter(|c| c.links.is_empty()).and_then(|c| named(c.root)))?;
         let start = self.at(first(expr));
         Some(Compared { fact, absolute, comparison, limit, span: start..line_end(self.code, start) })
     }
@@ -91,11 +91,11 @@ impl Reader<'_> {
                 _ => None,
             },
             Expr::Variable(..) => {
-                let chain = Chain::of(expr).filter(|chain| chain.links.is_empty())?;
-                if let Some(Local::Number(value)) = local(chain.root) {
+                let access = Access::of(expr).filter(|access| access.links.is_empty())?;
+                if let Some(Local::Number(value)) = local(access.root) {
                     return Some(value);
                 }
-                let value = self.constants.get(chain.root)?;
+                let value = self.constants.get(access.root)?;
                 value.as_float().ok().or_else(|| value.as_int().ok().map(|value| value as f64))
             }
             _ => None,
@@ -104,9 +104,9 @@ impl Reader<'_> {
 
     /// A fact with its path.
     pub(super) fn fact(&self, expr: &Expr) -> Option<NamedFact> {
-        let chain = Chain::of(expr)?;
-        let (group, links) = match chain.links.split_first() {
-            _ if is_group(chain.root) => (chain.root, chain.links.as_slice()),
+        let access = Access::of(expr)?;
+        let (group, links) = match access.links.split_first() {
+            _ if is_group(access.root) => (access.root, access.links.as_slice()),
             Some((Link::Property(group, _), rest)) if is_group(group) => (*group, rest),
             _ => return None,
         };

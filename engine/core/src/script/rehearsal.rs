@@ -41,7 +41,7 @@ pub(super) fn rehearse(
 
 fn everything(judge: &Judge, spoilt: &Spoilt<'_>, mistakes: &mut Mistakes) -> Result<()> {
     let present = judge.present();
-    for rule in &present.loaded.rules {
+    for rule in &present.compiled.rules {
         if mistakes.count() > MOST_TRIED {
             return Ok(());
         }
@@ -52,7 +52,7 @@ fn everything(judge: &Judge, spoilt: &Spoilt<'_>, mistakes: &mut Mistakes) -> Re
             certain(present.value(rule), mistakes)?;
         }
     }
-    match &present.loaded.reward {
+    match &present.compiled.reward {
         Some(span) if !spoilt.has("reward") => certain(present.reward(span), mistakes).map(drop),
         _ => Ok(()),
     }

@@ -10,7 +10,7 @@ use crate::diagnostic::{Diagnostic, Mistakes, Result, printable};
 use crate::judge::explain;
 use crate::judge::expression::{Flag, Number, Typed};
 use crate::judge::needs::Needs;
-use crate::judge::rule::{Clause, Persistence, Rule, RuleText, ScriptClause};
+use crate::judge::rule::{Clause, CompiledRule, Persistence, RuleText, ScriptClause};
 use rhai::{AST, ASTNode, Expr, Module, Scope, Shared, Stmt};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -26,8 +26,8 @@ pub(super) fn rules(
     needs: &mut Needs,
     spoilt: &Spoilt<'_>,
     mistakes: &mut Mistakes,
-) -> Vec<Rule> {
-    let mut rules: Vec<Rule> = Vec::new();
+) -> Vec<CompiledRule> {
+    let mut rules: Vec<CompiledRule> = Vec::new();
     let mut lines: BTreeMap<&str, usize> = BTreeMap::new();
     let mut compiler = Compiler { constants, needs };
     let has_reward = ast.iter_functions().any(|function| function.name == "reward");
@@ -59,7 +59,7 @@ fn compiled(
     compiler: &mut Compiler<'_>,
     spoilt: &Spoilt<'_>,
     mistakes: &mut Mistakes,
-) -> Option<Rule> {
+) -> Option<CompiledRule> {
     let source = &code.source;
     let count = mistakes.count();
     if written.name.trim().is_empty() {
@@ -88,7 +88,7 @@ fn compiled(
     }
     let text = RuleText { name: written.name.to_owned(), line, text };
     let (recover, parts) = (written.recover, parts(code, written.condition, compiler));
-    Some(Rule { text, condition, condition_span, persistence, value, value_span, recover, parts })
+    Some(CompiledRule { text, condition, condition_span, persistence, value, value_span, recover, parts })
 }
 fn wrong(code: &Code, message: &str, span: &Range<usize>, label: &str) -> Diagnostic {
     Diagnostic::new("E-SCRIPT-RULE", message).at(&code.source, span.clone(), label)

@@ -93,22 +93,22 @@ impl Log {
 }
 
 /// Settings, and where each was set.
-pub(super) type Places = BTreeMap<String, Range<usize>>;
+pub(super) type SettingPlaces = BTreeMap<String, Range<usize>>;
 
 /// What the set-up calls say.
 #[derive(Debug)]
 pub(super) struct SetUp {
     pub settings: Settings,
-    pub places: Places,
+    pub places: SettingPlaces,
     pub unread: Unread,
 }
 
 /// Ends the set-up: the settings that the calls make, over the defaults. Every call that is wrong is added to `mistakes`,
 /// with its place: an unknown key, a value out of range, a setting made twice.
 pub(super) fn finish(log: &Log, code: &Code, ast: &AST, mistakes: &mut Mistakes) -> SetUp {
-    let (settings, places, unread) = (Settings::default(), Places::new(), Unread::default());
+    let (settings, places, unread) = (Settings::default(), SettingPlaces::new(), Unread::default());
     let mut setup =
-        Setup { code, ast, settings, places, unread, mistakes, call: Position::NONE, entries: OnceCell::new() };
+        SetupReader { code, ast, settings, places, unread, mistakes, call: Position::NONE, entries: OnceCell::new() };
     for call in log.close() {
         setup.call = call.position;
         if let Err(wrong) = setup.apply(call.name, call.arguments) {
@@ -122,18 +122,18 @@ pub(super) fn finish(log: &Log, code: &Code, ast: &AST, mistakes: &mut Mistakes)
 /// Where keys and their values stand, by call and key.
 type Entries = BTreeMap<(Position, String), (Position, Position)>;
 
-struct Setup<'a> {
+struct SetupReader<'a> {
     code: &'a Code,
     ast: &'a AST,
     settings: Settings,
-    places: Places,
+    places: SettingPlaces,
     unread: Unread,
     mistakes: &'a mut Mistakes,
     call: Position,
     entries: OnceCell<Entries>,
 }
 
-impl Setup<'_> {
+impl SetupReader<'_> {
     fn apply(&mut self, name: &'static str, arguments: Vec<Dynamic>) -> Result<()> {
         let form = SETUP.iter().find(|row| row.name == name).map_or("", |row| row.form);
         let mut arguments = arguments.into_iter();

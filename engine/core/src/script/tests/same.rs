@@ -3,7 +3,7 @@
 use super::super::Behaviour;
 use super::parse;
 use crate::judge::Facts;
-use crate::judge::rule::{Clause, Rule};
+use crate::judge::rule::{Clause, CompiledRule};
 use crate::random::{Random, Stream};
 
 const BEAMS: usize = 9;
@@ -152,7 +152,8 @@ fn the_rules_of_the_scripts_are_native() {
     for name in ["wall", "corridor", "platform", "object"] {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../scripts/{name}.rhai"));
         let judge = Behaviour::load(&path).unwrap().judge(0.5, 181).unwrap();
-        let native = |rule: &Rule| matches!((&rule.condition, &rule.value), (Clause::Native(_), Clause::Native(_)));
-        assert!(judge.present().loaded.rules.iter().all(native), "{name}");
+        let native =
+            |rule: &CompiledRule| matches!((&rule.condition, &rule.value), (Clause::Native(_), Clause::Native(_)));
+        assert!(judge.present().compiled.rules.iter().all(native), "{name}");
     }
 }

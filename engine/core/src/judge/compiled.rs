@@ -3,20 +3,20 @@
 use super::explain;
 use super::needs::Needs;
 use super::readings::Part;
-use super::rule::Rule;
+use super::rule::CompiledRule;
 use crate::diagnostic::{Mistakes, Result, SourceText};
 use rhai::{AST, Dynamic, Engine, Position, Scope};
 use std::ops::Range;
 
 /// What judging needs of a script.
 #[derive(Debug)]
-pub(crate) struct Loaded {
+pub(crate) struct CompiledScript {
     /// The text as the user wrote it.
     pub source: SourceText,
     pub engine: Engine,
     pub ast: AST,
     pub constants: Scope<'static>,
-    pub rules: Vec<Rule>,
+    pub rules: Vec<CompiledRule>,
     pub needs: Needs,
     /// Where the name of `fn reward` stands, if there is one.
     pub reward: Option<Range<usize>>,
@@ -26,7 +26,7 @@ pub(crate) struct Loaded {
     pub calibrate: Option<Range<usize>>,
 }
 
-impl Loaded {
+impl CompiledScript {
     /// Checks that every beam that is named exists.
     ///
     /// # Errors

@@ -16,7 +16,7 @@ pub(super) enum Link<'a> {
 
 /// A root variable and what follows it.
 #[derive(Debug)]
-pub(super) struct Chain<'a> {
+pub(super) struct Access<'a> {
     /// The variable's name.
     pub root: &'a str,
     /// Whether the parser found a local variable of this name.
@@ -27,7 +27,7 @@ pub(super) struct Chain<'a> {
     pub links: Vec<Link<'a>>,
 }
 
-impl<'a> Chain<'a> {
+impl<'a> Access<'a> {
     /// Takes an expression apart, if it begins with a variable.
     pub(super) fn of(expr: &'a Expr) -> Option<Self> {
         let mut links = Vec::new();
