@@ -10,6 +10,7 @@
 //! | [`words`] | numbers as people read them |
 
 pub mod lint;
+mod markup;
 pub mod page;
 pub mod record;
 pub mod report;
