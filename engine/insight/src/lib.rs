@@ -12,6 +12,7 @@
 
 pub mod folder;
 pub mod lint;
+mod markup;
 pub mod page;
 pub mod record;
 pub mod report;

@@ -2,14 +2,13 @@
 //!
 //! The page is whole in one file, runs no script, and shows nothing of a pack but its PNG picture and escaped words.
 
-use std::fmt::Write as _;
-
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::author::PICTURE;
 use super::{Evidence, Pack, SeedClaim, Signature, TrustStore};
-use engine::diagnostic::{Diagnostic, Result, printable};
+use engine::diagnostic::printable;
 use insight::words::bounded;
 
 /// The largest picture that is shown, bytes.
@@ -18,6 +17,7 @@ const MAX_PICTURE_BYTES: usize = 4 << 20;
 const CURVE: [f64; 2] = [300.0, 84.0];
 /// The least distance between two numbers beside a curve.
 const LABEL: f64 = 12.0;
+const POLICY: &str = "default-src 'none'; img-src data:; style-src 'unsafe-inline'";
 const STYLE: &str = include_str!("gallery.css");
 
 /// A pack of the page, and what is known of its signature.
@@ -52,65 +52,63 @@ pub fn signature_line(trust: &TrustStore, pack: &Pack, signature: Option<&Signat
 }
 
 /// The page, as one HTML text.
-///
-/// # Errors
-/// Never in practice: only if text cannot be written to memory.
-pub fn gallery(cards: &[Card<'_>]) -> Result<String> {
-    let mut page = String::new();
-    write_page(&mut page, cards).map_err(|_| Box::new(Diagnostic::new("E-IO", "the gallery cannot be written")))?;
-    Ok(page)
-}
-
-fn write_page(page: &mut String, cards: &[Card<'_>]) -> std::fmt::Result {
+#[must_use]
+pub fn gallery(cards: &[Card<'_>]) -> String {
     let count = cards.len();
-    let plural = if count == 1 { "" } else { "s" };
-    write!(
-        page,
-        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; style-src 'unsafe-inline'\">\n\
-         <title>Behaviour packs</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
-         <header>\n<h1>Behaviour packs</h1>\n<p>{count} behaviour{plural}, each with the evidence that it carries. \
-         Measure one again with <code>engine pack verify --replay FILE.pack</code>.</p>\n</header>\n<main>\n"
-    )?;
-    cards.iter().try_for_each(|card| write_card(page, card))?;
-    page.push_str("</main>\n</body>\n</html>\n");
-    Ok(())
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta http-equiv="Content-Security-Policy" content=(POLICY);
+                title { "Behaviour packs" }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                header {
+                    h1 { "Behaviour packs" }
+                    p {
+                        (count) (if count == 1 { " behaviour" } else { " behaviours" })
+                        ", each with the evidence that it carries. Measure one again with "
+                        code { "engine pack verify --replay FILE.pack" } "."
+                    }
+                }
+                main { @for card in cards { (drawn(card)) } }
+            }
+        }
+    };
+    page.into_string()
 }
 
-fn write_card(page: &mut String, card: &Card<'_>) -> std::fmt::Result {
+fn drawn(card: &Card<'_>) -> Markup {
     let manifest = card.pack.manifest();
-    let (owner, name) = (escape(manifest.name.owner()), escape(manifest.name.name()));
-    write!(
-        page,
-        "<article>\n<h2><span>{owner}/</span>{name} <small>{}</small></h2>\n",
-        escape(&manifest.version.to_string())
-    )?;
-    writeln!(page, "<p class=\"about\">{}</p>", escape(&manifest.description))?;
-    match picture(card.pack) {
-        Some(data) => writeln!(
-            page,
-            "<img alt=\"Paths of {owner}/{name}: while learning, and with the learned policy\" src=\"data:image/png;base64,{data}\">"
-        )?,
-        None => page.push_str("<p class=\"none\">no picture</p>\n"),
+    let (owner, name) = (said(manifest.name.owner()), said(manifest.name.name()));
+    let asks = manifest.capabilities.lines().join(", ");
+    html! {
+        article {
+            h2 {
+                span { (owner) "/" } (name) " " small { (said(&manifest.version.to_string())) }
+            }
+            p .about { (said(&manifest.description)) }
+            @match picture(card.pack) {
+                Some(data) => img alt={ "Paths of " (owner) "/" (name) ": while learning, and with the learned policy" }
+                    src={ "data:image/png;base64," (data) };,
+                None => p .none { "no picture" },
+            }
+            @match &manifest.evidence {
+                Some(evidence) => { (curve(evidence)) (figures(evidence)) }
+                None => p .none { "no evidence" },
+            }
+            p class={ "sign " (if card.signed.trusted { "good" } else { "open" }) } { (said(&card.signed.text)) }
+            p .foot {
+                (said(&manifest.license)) " · asks for "
+                (said(if asks.is_empty() { "nothing" } else { &asks }))
+                br;
+                code { (card.pack.content()) }
+            }
+        }
     }
-    if let Some(evidence) = &manifest.evidence {
-        write_curve(page, evidence)?;
-        write_figures(page, evidence)?;
-    } else {
-        page.push_str("<p class=\"none\">no evidence</p>\n");
-    }
-    let class = if card.signed.trusted { "good" } else { "open" };
-    writeln!(page, "<p class=\"sign {class}\">{}</p>", escape(&card.signed.text))?;
-    let asks = manifest.capabilities.lines();
-    let asks = if asks.is_empty() { "nothing".to_owned() } else { asks.join(", ") };
-    write!(
-        page,
-        "<p class=\"foot\">{} · asks for {}<br><code>{}</code></p>\n</article>\n",
-        escape(&manifest.license),
-        escape(&asks),
-        card.pack.content()
-    )
 }
 
 /// The picture that `build` drew, if it is a PNG of a sound size.
@@ -121,49 +119,49 @@ fn picture(pack: &Pack) -> Option<String> {
 }
 
 /// The reinforcement of every 400 steps, a line for each seed.
-fn write_curve(page: &mut String, evidence: &Evidence) -> std::fmt::Result {
+fn curve(evidence: &Evidence) -> Markup {
     let values =
         || evidence.seeds.iter().flat_map(|claim| &claim.reinforcement_per_400).filter(|value| value.is_finite());
     let lowest = values().fold(-1.0, |low: f64, value| low.min(*value));
     let highest = values().fold(0.0, |high: f64, value| high.max(*value));
     if values().next().is_none() {
-        page.push_str("<p class=\"none\">nothing is learned: learned policies are combined</p>\n");
-        return Ok(());
+        return html! { p .none { "nothing is learned: learned policies are combined" } };
     }
     let [width, height] = CURVE;
     let y = |value: f64| height * (highest - value) / (highest - lowest);
-    writeln!(
-        page,
-        "<figure><svg viewBox=\"-34 -8 {} {}\" role=\"img\" aria-label=\"Reinforcement of every 400 steps\">",
-        width + 40.0,
-        height + 30.0
-    )?;
-    writeln!(page, "<path class=\"axis\" d=\"M0 {:.1}H{width}M0 0V{height}\"/>", y(0.0))?;
     let mut labelled: Vec<f64> = Vec::new();
     for value in [lowest, highest, 0.0] {
         // The line of zero needs no number where one of the ends is as good as there.
         if labelled.iter().all(|other| (y(*other) - y(value)).abs() >= LABEL) {
-            writeln!(page, "<text x=\"-4\" y=\"{:.1}\" text-anchor=\"end\">{}</text>", y(value) + 4.0, bounded(value))?;
             labelled.push(value);
         }
     }
-    for claim in &evidence.seeds {
+    let points = |claim: &SeedClaim| {
         let last = claim.reinforcement_per_400.len().saturating_sub(1).max(1) as f64;
         let point = |(index, value): (usize, &f64)| format!("{:.1},{:.1}", width * index as f64 / last, y(*value));
         let finite = claim.reinforcement_per_400.iter().enumerate().filter(|(_, value)| value.is_finite());
-        let points: Vec<String> = finite.map(point).collect();
-        writeln!(page, "<polyline points=\"{}\"/>", points.join(" "))?;
+        finite.map(point).collect::<Vec<_>>().join(" ")
+    };
+    let below = height + 18.0;
+    html! {
+        figure {
+            svg viewBox={ "-34 -8 " (width + 40.0) " " (height + 30.0) } role="img"
+                aria-label="Reinforcement of every 400 steps" {
+                path .axis d=(format!("M0 {:.1}H{width}M0 0V{height}", y(0.0))) {}
+                @for value in labelled {
+                    text x="-4" y=(format!("{:.1}", y(value) + 4.0)) text-anchor="end" { (bounded(value)) }
+                }
+                @for claim in &evidence.seeds { polyline points=(points(claim)) {} }
+                text x="0" y=(below) { "reinforcement of every 400 steps" }
+                text x=(width) y=(below) text-anchor="end" { (evidence.steps) " steps" }
+            }
+        }
     }
-    let label = height + 18.0;
-    writeln!(page, "<text x=\"0\" y=\"{label}\">reinforcement of every 400 steps</text>")?;
-    writeln!(page, "<text x=\"{width}\" y=\"{label}\" text-anchor=\"end\">{} steps</text>", evidence.steps)?;
-    page.push_str("</svg></figure>\n");
-    Ok(())
 }
 
-fn write_figures(page: &mut String, evidence: &Evidence) -> std::fmt::Result {
+fn figures(evidence: &Evidence) -> Markup {
     let learned = evidence.seeds.iter().filter(|claim| claim.learned_at.is_some()).count();
-    let Some(claim) = evidence.shown() else { return Ok(()) };
+    let Some(claim) = evidence.shown() else { return Markup::default() };
     let SeedClaim { seed, failures_per_1000, laps, contacts, mean_speed, .. } = claim;
     let mut rows = Vec::new();
     if evidence.steps > 0 {
@@ -174,30 +172,25 @@ fn write_figures(page: &mut String, evidence: &Evidence) -> std::fmt::Result {
     rows.push(("contacts", contacts.to_string()));
     rows.extend(laps.map(|laps| ("laps", format!("{laps:.1}"))));
     rows.push(("mean speed", format!("{mean_speed:.2} m/s")));
-    writeln!(page, "<table><caption>seed {seed}, test of {} steps</caption>", evidence.test_steps)?;
-    for (name, value) in rows {
-        writeln!(page, "<tr><th>{name}</th><td>{value}</td></tr>")?;
+    html! {
+        table {
+            caption { "seed " (seed) ", test of " (evidence.test_steps) " steps" }
+            @for (name, value) in rows { tr { th { (name) } td { (value) } } }
+        }
     }
-    page.push_str("</table>\n");
-    Ok(())
 }
 
-/// A stranger's words as text of a page.
-fn escape(text: &str) -> String {
-    printable(text)
-        .replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
-        .replace('"', "&quot;")
-        .replace('\'', "&#39;")
+/// A stranger's words, made safe for people by [`printable`] and for a page by the template.
+fn said(words: &str) -> Markup {
+    html! { (printable(words)) }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::escape;
+    use super::said;
 
     #[test]
     fn a_strangers_words_stay_words() {
-        assert_eq!(escape("<script>'\"&\u{1b}"), "&lt;script&gt;&#39;&quot;&amp;\\u{1b}");
+        assert_eq!(said("<script>'\"&\u{1b}").into_string(), "&lt;script&gt;'&quot;&amp;\\u{1b}");
     }
 }

@@ -1,7 +1,7 @@
 //! The page itself: the files of `web/`, one document of data, and a policy that lets nothing else run or load.
 
 use super::document::Document;
-use crate::report::base64;
+use crate::markup::{Escaped, base64};
 use engine::diagnostic::{Diagnostic, Result};
 use engine::digest::Digest;
 
@@ -54,7 +54,7 @@ pub fn page(document: Option<&Document>) -> Result<Page> {
     let mut rest = HTML;
     for (mark, text) in [
         ("{{policy}}", policy.as_str()),
-        ("{{title}}", &escaped(&title)),
+        ("{{title}}", &Escaped(&title).to_string()),
         ("{{style}}", STYLE),
         ("{{data}}", &data),
         ("{{script}}", &script),
@@ -70,8 +70,4 @@ pub fn page(document: Option<&Document>) -> Result<Page> {
 
 fn digest(text: &str) -> String {
     base64(Digest::of(text.as_bytes()).bytes())
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

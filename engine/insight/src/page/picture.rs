@@ -5,7 +5,7 @@ use image::codecs::jpeg::JpegEncoder;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder, ImageResult};
 
-use crate::report::base64;
+use crate::markup::base64;
 use engine::diagnostic::{Diagnostic, Result};
 
 /// The quality of camera images: pixel noise would make them ten times as large without loss.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use super::*;
-use crate::report::base64;
+use crate::markup::base64;
 use engine::diagnostic::SourceText;
 use engine::experiment::{Ledger, Overrides, Phase, Plan, Playback, learn_into};
 use engine::script::Behaviour;

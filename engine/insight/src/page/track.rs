@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::shot::{Shot, ShotMaker};
-use crate::report::base64;
+use crate::markup::base64;
 use engine::diagnostic::Result;
 use engine::experiment::{Ledger, Phase, Plan, Playback, StepReasons};
 use engine::geometry::Pose;

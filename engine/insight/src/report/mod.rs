@@ -34,7 +34,6 @@ pub(crate) use plan::holds;
 pub use policy::{PolicyData, PolicyState, policy};
 pub use policy_diff::{PolicyDiffData, StateChange, policy_diff};
 pub use trajectory::{TrajectoryData, trajectories};
-pub(crate) use vector::base64;
 
 #[cfg(test)]
 mod tests;

@@ -46,7 +46,7 @@ pub(super) fn list(arguments: &ListArguments, console: &mut Console) -> std::res
     if let Some(folder) = &arguments.gallery {
         create_folder(folder)?;
         let path = folder.join("index.html");
-        write_atomic(&path, gallery(&cards)?.as_bytes())?;
+        write_atomic(&path, gallery(&cards).as_bytes())?;
         console.line(&format!("gallery:   {}", path.display()))?;
     }
     Ok(0)
