@@ -16,7 +16,7 @@ use engine::experiment::{
     Cycle, Learning, Ledger, Overrides, Phase, Plan, Playback, RunLog, TestRun, frozen, test_robot,
 };
 use engine::geometry::{Pose, Twist};
-use engine::learner::{Policy, TableLearner};
+use engine::learner::{Policy, shipped_learner};
 use engine::random::{Random, Stream};
 use engine::robot::{Robot, Whereabouts};
 use engine::script::Behaviour;
@@ -169,7 +169,7 @@ fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
     // Learn, with every step recorded.
     let mut log = RunLog::new(&plan);
     let cycle = Cycle::new(&plan, Remote::connect(address)?)?;
-    let learner = TableLearner::new(&plan.settings.learner, plan.task(cycle.state_map(), 1)?);
+    let learner = shipped_learner(&plan.settings.learner, plan.task(cycle.state_map(), 1)?);
     let mut learning = Learning::with(&plan, 1, cycle, learner);
     learning.run(plan.settings.run.steps, &AtomicBool::new(false), &|_| (), &mut log.learning)?;
     let learned = learning.finish();

@@ -29,8 +29,7 @@ pub struct Runnable {
 impl Runnable {
     /// The text of a policy that this behaviour learned.
     pub(super) fn policy_text(&self, policy: &Policy) -> Result<String> {
-        let plan = &self.plan;
-        policy_to_toml(plan.behaviour.name(), &plan.settings, &plan.filters, policy, None)
+        policy_to_toml(&self.plan, policy, None)
     }
 }
 

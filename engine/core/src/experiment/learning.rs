@@ -9,7 +9,7 @@ use super::legs::with_gone;
 use super::trail::{Recorder, Trail};
 use super::{Cycle, Ledger, Observer, Phase, Plan, Step, Tally, WINDOW_STEPS, drive};
 use crate::diagnostic::{Diagnostic, Result};
-use crate::learner::{Carry, Learner, Policy, TableLearner};
+use crate::learner::{Carry, Learner, Policy, ShippedLearner, shipped_learner};
 use crate::robot::{Robot, SimulatedRobot};
 
 /// How far a seed has come, said at the end of every window.
@@ -110,7 +110,7 @@ pub fn learn_into(
 }
 
 /// A robot that learns: for some steps, then for more, under the same reward or another.
-pub struct Learning<R = SimulatedRobot, L = TableLearner> {
+pub struct Learning<R = SimulatedRobot, L = ShippedLearner> {
     seed: u64,
     cycle: Cycle<R>,
     learner: L,
@@ -129,7 +129,7 @@ impl Learning {
     /// If the plan does not work.
     pub fn new(plan: &Plan, seed: u64) -> Result<Self> {
         let cycle = Cycle::new(plan, Phase::Learning.robot(plan, seed)?)?;
-        let learner = TableLearner::new(&plan.settings.learner, plan.task(cycle.state_map(), seed)?);
+        let learner = shipped_learner(&plan.settings.learner, plan.task(cycle.state_map(), seed)?);
         Ok(Self::with(plan, seed, cycle, learner))
     }
 }

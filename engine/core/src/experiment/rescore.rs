@@ -11,7 +11,7 @@ use std::sync::Arc;
 use super::legs::first_fixed_difference;
 use super::{Ledger, Phase, Plan, Playback};
 use crate::diagnostic::{Diagnostic, Result, printable};
-use crate::learner::{Ending, Learner, Policy, TableLearner, Transition};
+use crate::learner::{Ending, Learner, Policy, Transition, shipped_learner};
 use crate::script::Behaviour;
 use crate::settings::{LearnerKind, SETTINGS, apply};
 
@@ -192,7 +192,7 @@ fn learn_along(plan: &Plan, seed: u64, ledger: &Ledger, judged: &[Judged], passe
         settings.kind = LearnerKind::Q;
         settings.replay = 0;
     }
-    let mut learner = TableLearner::new(&settings, plan.task(&*plan.state_map()?, seed)?);
+    let mut learner = shipped_learner(&settings, plan.task(&*plan.state_map()?, seed)?);
     for _ in 0..passes {
         for (record, judged) in ledger.records().zip(judged) {
             learner.visit(record.state as usize);

@@ -41,8 +41,7 @@ pub(super) fn write_log(folder: &Path, plan: &Plan, seed: u64, log: &RunLog) -> 
 /// Writes `policy.toml`.
 pub(super) fn write_policy(folder: &Path, plan: &Plan, learned: &Learned) -> Result<()> {
     let run = run_to_toml(plan, learned.seed)?;
-    let (name, settings) = (plan.behaviour.name(), &plan.settings);
-    let text = policy_to_toml(name, settings, &plan.filters, &learned.policy, Some(&run))?;
+    let text = policy_to_toml(plan, &learned.policy, Some(&run))?;
     write_atomic(&folder.join(POLICY_FILE), text.as_bytes())
 }
 

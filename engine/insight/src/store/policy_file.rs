@@ -12,7 +12,7 @@ use engine::filter::Catalogue;
 use engine::geometry::Twist;
 use engine::learner::{Policy, PolicyRow};
 use engine::settings::{FilterSettings, GridSettings, Settings};
-use engine::state::{MAX_STATES, StateMap};
+use engine::state::{GridMap, MAX_STATES, StateMap};
 
 /// The name of the file in a run's folder.
 pub const POLICY_FILE: &str = "policy.toml";
@@ -75,14 +75,22 @@ pub struct StoredPolicy {
 /// The text of `policy.toml`; states that were never visited are left out. `run` is the text of the `run.toml` beside it.
 ///
 /// # Errors
-/// Never in practice: only if the table cannot be written as TOML.
-pub fn policy_to_toml(
+/// If the plan's states do not come from a grid, which is what this format has room for.
+pub fn policy_to_toml(plan: &Plan, policy: &Policy, run: Option<&str>) -> Result<String> {
+    text_of(plan.behaviour.name(), &plan.settings, &plan.filters, (&*plan.state_map()?, policy), run)
+}
+
+fn text_of(
     behaviour: &str,
     settings: &Settings,
     filters: &Catalogue,
-    policy: &Policy,
+    (map, policy): (&dyn StateMap, &Policy),
     run: Option<&str>,
 ) -> Result<String> {
+    let unwritten =
+        |why: String| Box::new(Diagnostic::new("E-POLICY-FILE", format!("the policy cannot be written: {why}")));
+    let grid = GridMap::settings_from(&map.to_table())
+        .map_err(|key| unwritten(format!("its states do not come from a grid, which has '{key}'")))?;
     let state = policy.rows().iter().enumerate().filter_map(|(index, row)| {
         let row = row.as_ref()?;
         let best = policy.best(index)?.0;
@@ -92,10 +100,10 @@ pub fn policy_to_toml(
         format: FORMAT,
         behaviour: behaviour.to_owned(),
         run_sha256: run.map(|run| Digest::of(run.as_bytes()).to_string()),
-        rows: settings.grid.rows,
-        columns: settings.grid.columns,
-        occupied: settings.grid.occupied,
-        fill: settings.grid.fill,
+        rows: grid.rows,
+        columns: grid.columns,
+        occupied: grid.occupied,
+        fill: grid.fill,
         states: policy.rows().len(),
         actions: settings.actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
         filter: settings.filters.iter().map(|filter| FilterEntry::new(filter, filters)).collect(),
@@ -207,11 +215,18 @@ fn unfit(source: &SourceText, message: &str, help: &str) -> Box<Diagnostic> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use engine::state::{Grid, GridMap};
+    use engine::state::Grid;
+
+    fn map(settings: &Settings) -> GridMap {
+        GridMap::new(&settings.grid, Grid::new(&settings.grid, 160, 120).unwrap())
+    }
+
+    fn written(settings: &Settings) -> Result<String> {
+        text_of("wall", settings, &Catalogue::linked_in(), (&map(settings), &policy()), None)
+    }
 
     fn read(source: &SourceText, settings: &Settings) -> Result<Policy> {
-        let grid = Grid::new(&settings.grid, 160, 120).unwrap();
-        fitting(source, settings, &GridMap::new(&settings.grid, grid)).map(|stored| stored.policy)
+        fitting(source, settings, &map(settings)).map(|stored| stored.policy)
     }
 
     fn policy() -> Policy {
@@ -224,7 +239,7 @@ mod tests {
     #[test]
     fn a_policy_is_read_back_bit_for_bit() {
         let settings = Settings::default();
-        let text = policy_to_toml("wall", &settings, &Catalogue::linked_in(), &policy(), None).unwrap();
+        let text = written(&settings).unwrap();
         let read = read(&SourceText::new("policy.toml", text), &settings).unwrap();
         assert_eq!(read, policy());
     }
@@ -234,10 +249,7 @@ mod tests {
         let mut settings = Settings::default();
         let parameters = vec![("saturation".to_owned(), 0.4), ("hue_deg".to_owned(), 120.0)];
         settings.filters = vec![FilterSettings { name: "colour".to_owned(), parameters }];
-        let source = SourceText::new(
-            "policy.toml",
-            policy_to_toml("wall", &settings, &Catalogue::linked_in(), &policy(), None).unwrap(),
-        );
+        let source = SourceText::new("policy.toml", written(&settings).unwrap());
         let mut read = StoredPolicy::parse(&source).unwrap().filters;
         read[0].parameters.sort_by_key(|(name, _)| std::cmp::Reverse(name.clone()));
         assert_eq!(read, settings.filters);
@@ -253,10 +265,7 @@ mod tests {
     #[test]
     fn another_grid_or_other_actions_are_refused() {
         let mut settings = Settings::default();
-        let source = SourceText::new(
-            "policy.toml",
-            policy_to_toml("wall", &settings, &Catalogue::linked_in(), &policy(), None).unwrap(),
-        );
+        let source = SourceText::new("policy.toml", written(&settings).unwrap());
         settings.grid.rows = 4;
         assert!(read(&source, &settings).unwrap_err().message.contains("a grid of 3x3"));
         settings.grid.rows = 3;
@@ -268,7 +277,7 @@ mod tests {
     #[test]
     fn damage_is_an_error_and_not_a_guess() {
         let settings = Settings::default();
-        let text = policy_to_toml("wall", &settings, &Catalogue::linked_in(), &policy(), None).unwrap();
+        let text = written(&settings).unwrap();
         for damaged in [text.replace("index = 5", "index = 64"), text.replace("-0.1,", "nan,"), text[..200].to_owned()]
         {
             assert!(read(&SourceText::new("policy.toml", damaged), &settings).is_err());

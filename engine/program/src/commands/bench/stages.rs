@@ -8,7 +8,7 @@ use engine::experiment::{Cycle, Ledger, Observer, Plan, Step};
 use engine::filter::Chain;
 use engine::geometry::{Isometry3, Pose};
 use engine::judge::{Facts, Judge};
-use engine::learner::{Learner, TableLearner, Transition};
+use engine::learner::{Learner, ShippedLearner, Transition, shipped_learner};
 use engine::random::{Random, Stream};
 use engine::robot::SimulatedRobot;
 use engine::sensors::observation::{Image, Scan};
@@ -51,7 +51,7 @@ pub(crate) struct Stages {
     chain: Chain,
     grid: Grid,
     judge: Judge,
-    learner: TableLearner,
+    learner: ShippedLearner,
     cycle: Cycle<SimulatedRobot>,
     step: Step,
     ledger: Ledger,
@@ -88,7 +88,7 @@ impl Stages {
             image: samples[0].image.clone(),
             scan: Scan { ranges_m: vec![0.0; settings.laser.beams as usize] },
             chain: plan.chain()?,
-            learner: TableLearner::new(&settings.learner, plan.task(&*plan.state_map()?, 1)?),
+            learner: shipped_learner(&settings.learner, plan.task(&*plan.state_map()?, 1)?),
             grid,
             judge,
             step: cycle.step(0)?,

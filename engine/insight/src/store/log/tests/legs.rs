@@ -104,7 +104,7 @@ fn a_swapped_run_comes_back_from_its_folder() {
     let run = run_to_toml(&plan, SEED).unwrap();
     assert!(run.starts_with("format = 2\n") && run.contains("table = \"decay\""), "{run}");
     std::fs::write(folder.join("run.toml"), &run).unwrap();
-    let table = policy_to_toml("log", &plan.settings, &plan.filters, &learned.policy, Some(&run)).unwrap();
+    let table = policy_to_toml(&plan, &learned.policy, Some(&run)).unwrap();
     std::fs::write(folder.join("policy.toml"), table).unwrap();
     let stored = StoredRun::load(&folder).unwrap();
     let file = log_to_bytes(&log, &plan, SEED, &run).unwrap();
