@@ -5,7 +5,7 @@ use engine::learner::Carry;
 use engine::script::Behaviour;
 use ratatui_core::style::{Color, Modifier};
 use watch::Board;
-use watch::terminal::{Ink, Panel, View};
+use watch::terminal::{Panel, TerminalInk, View};
 
 use super::{ADDRESS, INK, buffer, plan, put, save, screen, seen, view};
 use crate::support::{SCRIPT, WORLD};
@@ -158,7 +158,7 @@ fn rules_of_a_reward_that_was_swapped_keep_their_names() {
 fn without_colours_rules_have_letters() {
     let board = Board::default();
     save(&board, 1, SCRIPT, WORLD);
-    let mut plain = View::new(ADDRESS, Ink { colour: false, fine: true });
+    let mut plain = View::new(ADDRESS, TerminalInk { colour: false, fine: true });
     plain.show(board.shown(0).unwrap());
     let drawn = buffer(&plain, 80, 24);
     assert!(drawn.content().iter().all(|cell| cell.fg == Color::Reset && cell.bg == Color::Reset));
@@ -169,7 +169,7 @@ fn without_colours_rules_have_letters() {
 fn a_console_without_fine_dots_gets_half_blocks() {
     let board = Board::default();
     save(&board, 1, SCRIPT, WORLD);
-    let mut coarse = View::new(ADDRESS, Ink { colour: true, fine: false });
+    let mut coarse = View::new(ADDRESS, TerminalInk { colour: true, fine: false });
     coarse.show(board.shown(0).unwrap());
     let text = screen(&coarse, 80, 24);
     assert!(text.contains('▀') && !text.chars().any(|c| ('\u{2800}'..='\u{28ff}').contains(&c)), "{text}");

@@ -15,12 +15,12 @@ use engine::world::Layout;
 use insight::page::{Document, Moments};
 use ratatui_core::buffer::Buffer;
 use ratatui_core::layout::Rect;
-use watch::terminal::{Ink, View, draw};
+use watch::terminal::{TerminalInk, View, draw};
 use watch::{Board, SavedRun, WatchedSeed};
 
 use crate::support::{SCRIPT, WORLD};
 
-const INK: Ink = Ink { colour: true, fine: true };
+const INK: TerminalInk = TerminalInk { colour: true, fine: true };
 const ADDRESS: &str = "http://127.0.0.1:8400/?token=00112233445566778899aabbccddeeff";
 
 /// Learns and tests two seeds, and puts them on the board as a save.

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::bundle::read_limited;
 use super::entry_path::{EntryPath, MAX_LEVELS};
 use super::evidence::{Evidence, Proof, measure};
-use super::manifest::{self, Capabilities, Dependency, Entry, FileLine, Manifest, toml_error};
+use super::manifest::{self, Capabilities, Dependency, FileLine, Manifest, PackEntry, toml_error};
 use super::marks::STEPS;
 use super::{Digest, MAX_MANIFEST_BYTES, MAX_PACK_BYTES, MAX_SEEDS, Pack, PackName, Runnable, archive, malformed};
 use engine::diagnostic::{Diagnostic, Result, SourceText, nearest_name, printable};
@@ -93,7 +93,7 @@ impl Author {
             engine: self.engine.clone(),
             license: self.license.clone(),
             description: self.description.clone(),
-            entry: Entry { script: self.script.clone(), world: self.world.clone(), policy: None },
+            entry: PackEntry { script: self.script.clone(), world: self.world.clone(), policy: None },
             capabilities: self.capabilities.clone(),
             depends: self.depends.clone(),
             files: Vec::new(),

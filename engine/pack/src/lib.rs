@@ -32,7 +32,7 @@ pub use evidence::measure;
 pub use evidence::{Difference, Evidence, Proof, SeedClaim, replay};
 pub use gallery::{Card, SignatureLine, gallery, signature_line};
 pub use lock::{Lock, Locked};
-pub use manifest::{Capabilities, Dependency, Entry, FileLine, Manifest};
+pub use manifest::{Capabilities, Dependency, FileLine, Manifest, PackEntry};
 pub use name::PackName;
 pub use probe::fingerprint;
 pub use resolve::{Offer, resolve};

@@ -32,7 +32,7 @@ pub struct Manifest {
     /// One sentence.
     pub description: String,
     /// The files that a run starts from.
-    pub entry: Entry,
+    pub entry: PackEntry,
     /// What it asks for; nothing unless said.
     #[serde(default, skip_serializing_if = "Capabilities::is_none")]
     pub capabilities: Capabilities,
@@ -50,7 +50,7 @@ pub struct Manifest {
 /// The files that a run starts from.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Entry {
+pub struct PackEntry {
     /// The behaviour.
     pub script: EntryPath,
     /// The world; without it, the one that the script names.
@@ -201,7 +201,7 @@ impl Manifest {
     }
 
     fn check_entry(&self) -> Result<()> {
-        let Entry { script, world, policy } = &self.entry;
+        let PackEntry { script, world, policy } = &self.entry;
         let files =
             [("script", "rhai", Some(script)), ("world", "toml", world.as_ref()), ("policy", "toml", policy.as_ref())];
         for (what, ending, path) in files {

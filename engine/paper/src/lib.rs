@@ -23,7 +23,7 @@ pub use looks::{Look, Seen};
 pub use markdown::markdown;
 pub use page::page;
 pub use row::{Reproduction, Row, rows};
-pub use verdict::{Rule, Spread, Verdict};
+pub use verdict::{RowSpread, Rule, Verdict};
 
 #[cfg(test)]
 mod tests;

@@ -8,7 +8,7 @@ use super::campaign::{JobResult, Measured, Options};
 use super::claims::Claim;
 use super::commands::command;
 use super::job::{Learn, Metric, Trial};
-use super::verdict::{Spread, Verdict};
+use super::verdict::{RowSpread, Verdict};
 
 /// All rows, as `reproduce.json` holds them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -109,7 +109,7 @@ fn row(claim: &Claim, measured: &Measured) -> Row {
 
 type Missing = (Verdict, String);
 
-fn spread(measured: &Measured, metric: Metric, learn: Learn, trial: Option<Trial>) -> Result<Spread, Missing> {
+fn spread(measured: &Measured, metric: Metric, learn: Learn, trial: Option<Trial>) -> Result<RowSpread, Missing> {
     let none = |reason: &str| (Verdict::NotMeasured, sentence(reason));
     let job = measured.job(learn).ok_or_else(|| none("it was not asked for"))?;
     let plan = job.plan.as_ref().map_err(|reason| none(reason))?;
@@ -120,7 +120,7 @@ fn spread(measured: &Measured, metric: Metric, learn: Learn, trial: Option<Trial
     let states = plan.grid().map_err(|error| none(&error.message))?.states();
     let values = values(job, metric, states, at);
     let manner = metric.manner();
-    Spread::new(&values, |value| metric.good(value).0, manner.low_is_good)
+    RowSpread::new(&values, |value| metric.good(value).0, manner.low_is_good)
         .ok_or_else(|| (Verdict::NotComparable, "No seed met what this number is about.".to_owned()))
 }
 
@@ -135,7 +135,7 @@ fn values(job: &JobResult, metric: Metric, states: usize, trial: Option<usize>) 
     job.outcomes.iter().map(value).collect()
 }
 
-fn numbers(metric: Metric, spread: &Spread) -> Numbers {
+fn numbers(metric: Metric, spread: &RowSpread) -> Numbers {
     let manner = metric.manner();
     let finite = |value: f64| value.is_finite().then_some(value);
     let (good, seeds) = (spread.good, spread.values.len());

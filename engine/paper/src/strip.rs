@@ -31,7 +31,7 @@ pub(super) fn strip(claim: &Claim, ours: &Numbers) -> Markup {
     let span = if high > low { high - low } else { 1.0 };
     let place = |value: f64| FROM_PX + (TO_PX - FROM_PX) * (value - low) / span;
     let band = ours.quartile_low.map(|low| (place(low), ours.quartile_high.map_or(TO_PX, place)));
-    // Spread a little up and down, so that equal seeds show.
+    // RowSpread a little up and down, so that equal seeds show.
     let height = |seed: usize| MIDDLE_PX + [0.0, -4.0, 4.0, -2.0, 2.0][seed % 5];
     let drawing = html! {
         path .axis d={ "M" (FROM_PX) " " (MIDDLE_PX) "H" (TO_PX) } {}

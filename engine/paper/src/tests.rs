@@ -5,8 +5,8 @@ use super::job::Metric;
 use super::row::Row;
 use super::*;
 
-fn spread(values: &[f64]) -> Spread {
-    Spread::new(values, f64::is_finite, true).unwrap()
+fn spread(values: &[f64]) -> RowSpread {
+    RowSpread::new(values, f64::is_finite, true).unwrap()
 }
 
 #[test]
@@ -14,8 +14,8 @@ fn quartiles_and_median_are_values_of_seeds_and_never_is_the_worst() {
     let found = spread(&[1200.0, f64::INFINITY, 800.0, 2000.0]);
     assert_eq!((found.quantile(0.25), found.median(), found.quantile(0.75)), (1200.0, 2000.0, f64::INFINITY));
     assert_eq!((found.worst(), found.good), (f64::INFINITY, 3));
-    assert_eq!(Spread::new(&[0.1, 0.3], |_| true, false).unwrap().worst(), 0.1);
-    assert!(Spread::new(&[f64::NAN], |_| true, true).is_none());
+    assert_eq!(RowSpread::new(&[0.1, 0.3], |_| true, false).unwrap().worst(), 0.1);
+    assert!(RowSpread::new(&[f64::NAN], |_| true, true).is_none());
 }
 
 #[test]

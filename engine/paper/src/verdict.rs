@@ -63,7 +63,7 @@ pub enum Rule {
 
 /// Numbers of all seeds.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Spread {
+pub struct RowSpread {
     /// By seed, in the order of the seeds; infinite stands for never.
     pub values: Vec<f64>,
     /// How many are good.
@@ -71,7 +71,7 @@ pub struct Spread {
     low_is_good: bool,
 }
 
-impl Spread {
+impl RowSpread {
     /// The spread of all values that are numbers; `None` without any.
     #[must_use]
     pub fn new(values: &[f64], good: impl Fn(f64) -> bool, low_is_good: bool) -> Option<Self> {
@@ -119,7 +119,7 @@ impl Spread {
 impl Rule {
     /// The verdict on numbers, and on those that they are compared with.
     #[must_use]
-    pub fn judge(self, ours: &Spread, reference: Option<&Spread>) -> Verdict {
+    pub fn judge(self, ours: &RowSpread, reference: Option<&RowSpread>) -> Verdict {
         let median = ours.median();
         let or_worse = |fine: bool| if fine { Verdict::Reproduced } else { Verdict::Worse };
         let compared = |rule: &dyn Fn(f64) -> Verdict| reference.map_or(Verdict::NotComparable, |r| rule(r.median()));

@@ -15,7 +15,7 @@ pub(super) const SETTLE: Duration = Duration::from_millis(200);
 
 /// What a look at the files tells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) struct Seen {
+pub(super) struct SeenFile {
     /// A file holds something else than at the last look.
     pub saved: bool,
     /// A filter is being written: it must be looked at again after [`SETTLE`].
@@ -85,7 +85,7 @@ impl Files {
     }
 
     /// What happened since this was asked last.
-    pub(super) fn look(&mut self) -> Seen {
+    pub(super) fn look(&mut self) -> SeenFile {
         self.contents.look(Instant::now())
     }
 
@@ -105,7 +105,7 @@ impl Contents {
     }
 
     /// A script is small and saved at once; half a library would be an error that means nothing.
-    fn look(&mut self, now: Instant) -> Seen {
+    fn look(&mut self, now: Instant) -> SeenFile {
         let mut saved = false;
         for (file, known) in &mut self.files {
             let present = digest(file);
@@ -120,12 +120,12 @@ impl Contents {
         if filters != self.finished {
             if now.duration_since(since) < SETTLE {
                 self.unfinished = Some((since, filters));
-                return Seen { saved, unfinished: true };
+                return SeenFile { saved, unfinished: true };
             }
             self.finished = filters;
             saved = true;
         }
-        Seen { saved, unfinished: false }
+        SeenFile { saved, unfinished: false }
     }
 
     /// The filters in the folders, those that can be read.
@@ -149,9 +149,9 @@ fn failed(error: &notify::Error) -> Box<Diagnostic> {
 mod tests {
     use super::*;
 
-    const NOTHING: Seen = Seen { saved: false, unfinished: false };
-    const UNFINISHED: Seen = Seen { saved: false, unfinished: true };
-    const SAVED: Seen = Seen { saved: true, unfinished: false };
+    const NOTHING: SeenFile = SeenFile { saved: false, unfinished: false };
+    const UNFINISHED: SeenFile = SeenFile { saved: false, unfinished: true };
+    const SAVED: SeenFile = SeenFile { saved: true, unfinished: false };
 
     #[test]
     fn a_filter_counts_once_it_has_not_changed_for_a_while() {

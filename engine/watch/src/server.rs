@@ -52,7 +52,7 @@ pub struct Address {
 
 /// What every request can reach.
 #[derive(Clone)]
-pub(super) struct Shared {
+pub(super) struct ServerState {
     pub board: Arc<Board>,
     asker: Asker,
     guard: Arc<Guard>,
@@ -81,12 +81,12 @@ pub fn listen(board: Arc<Board>, asker: Asker, port: u16) -> Result<Address> {
     let token = hex(&random);
     let url = format!("http://127.0.0.1:{port}/?token={token}");
     let guard = Arc::new(Guard::new(token, port));
-    let shared = Shared { board, asker, guard, page: Arc::new(page(None)?), player: Arc::new(Semaphore::new(1)) };
+    let shared = ServerState { board, asker, guard, page: Arc::new(page(None)?), player: Arc::new(Semaphore::new(1)) };
     std::thread::spawn(move || runtime.block_on(accept(listener, router(shared))));
     Ok(Address { port, url })
 }
 
-fn router(shared: Shared) -> Router {
+fn router(shared: ServerState) -> Router {
     Router::new()
         .route("/", get(index))
         .route("/live", get(socket::live))
@@ -148,7 +148,7 @@ fn raw((status, why): Refusal) -> String {
     )
 }
 
-async fn guarded(State(shared): State<Shared>, request: Request, next: Next) -> Response {
+async fn guarded(State(shared): State<ServerState>, request: Request, next: Next) -> Response {
     let mut response = match shared.guard.check(request.method(), request.uri(), request.headers()) {
         Ok(()) => next.run(request).await,
         Err(refusal) => {
@@ -174,11 +174,11 @@ async fn guarded(State(shared): State<Shared>, request: Request, next: Next) -> 
     response
 }
 
-async fn index(State(shared): State<Shared>) -> Response {
+async fn index(State(shared): State<ServerState>) -> Response {
     ([(header::CONTENT_TYPE, "text/html; charset=utf-8")], shared.page.html.clone()).into_response()
 }
 
-async fn relearn(State(shared): State<Shared>) -> StatusCode {
+async fn relearn(State(shared): State<ServerState>) -> StatusCode {
     shared.asker.again();
     StatusCode::ACCEPTED
 }
@@ -197,7 +197,10 @@ struct FrameQuestion {
     step: usize,
 }
 
-async fn track(State(shared): State<Shared>, Query(TrackQuestion { save, seed }): Query<TrackQuestion>) -> Response {
+async fn track(
+    State(shared): State<ServerState>,
+    Query(TrackQuestion { save, seed }): Query<TrackQuestion>,
+) -> Response {
     let Some(run) = shared.board.saved(save) else { return StatusCode::NOT_FOUND.into_response() };
     played(&shared, move || {
         Document::tracks_of(&run.plan, &run.seeds.iter().find(|one| one.learned.seed == seed)?.data())
@@ -205,7 +208,7 @@ async fn track(State(shared): State<Shared>, Query(TrackQuestion { save, seed })
     .await
 }
 
-async fn frame(State(shared): State<Shared>, Query(question): Query<FrameQuestion>) -> Response {
+async fn frame(State(shared): State<ServerState>, Query(question): Query<FrameQuestion>) -> Response {
     let Some(run) = shared.board.saved(question.save) else { return StatusCode::NOT_FOUND.into_response() };
     played(&shared, move || shot(&run, &question)).await
 }
@@ -222,7 +225,7 @@ fn shot(run: &SavedRun, question: &FrameQuestion) -> Option<Result<Shot>> {
 
 /// Answers with what a job on another thread found.
 async fn played<T: serde::Serialize + Send + 'static>(
-    shared: &Shared,
+    shared: &ServerState,
     job: impl FnOnce() -> Option<Result<T>> + Send + 'static,
 ) -> Response {
     let Ok(_turn) = shared.player.acquire().await else { return StatusCode::SERVICE_UNAVAILABLE.into_response() };

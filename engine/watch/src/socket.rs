@@ -9,7 +9,7 @@ use axum::extract::ws::{CloseFrame, Message, WebSocket, WebSocketUpgrade, close_
 use axum::response::Response;
 
 use super::board::Board;
-use super::server::{Permit, Shared};
+use super::server::{Permit, ServerState};
 
 /// Longest message that a page may send, bytes; it has nothing to say.
 const MOST_BYTES: usize = 4096;
@@ -17,7 +17,7 @@ const MOST_BYTES: usize = 4096;
 const SEND_TIMEOUT: Duration = Duration::from_secs(10);
 
 pub(super) async fn live(
-    State(shared): State<Shared>,
+    State(shared): State<ServerState>,
     Extension(permit): Extension<Permit>,
     upgrade: WebSocketUpgrade,
 ) -> Response {

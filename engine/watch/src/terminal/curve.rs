@@ -5,7 +5,7 @@ use ratatui_core::layout::Rect;
 use ratatui_core::text::{Line, Span};
 
 use super::dots::{Dot, Dots, Rank};
-use super::ink::Ink;
+use super::ink::TerminalInk;
 use super::lines::{heading, nothing, write};
 use super::view::View;
 use super::words::{columns, ticks};
@@ -42,7 +42,7 @@ impl Axes {
 
 pub(super) fn draw(view: &View, area: Rect, buffer: &mut Buffer) {
     let (Some(shown), Some(document)) = (&view.shown.run, view.document()) else { return };
-    let unit = Span::styled(format!("reward per {} steps", document.window_steps), Ink::quiet());
+    let unit = Span::styled(format!("reward per {} steps", document.window_steps), TerminalInk::quiet());
     let inner = heading("Learning curve", vec![unit], area, buffer);
     let curves: Vec<Vec<f64>> = shown.run.seeds.iter().map(|seed| seed.learned.tally.curve()).collect();
     let before: &[Vec<f64>] = shown.before.as_deref().unwrap_or_default();
@@ -70,7 +70,7 @@ pub(super) fn draw(view: &View, area: Rect, buffer: &mut Buffer) {
     }
     if view.phase == Phase::Learning && view.record().is_some() {
         let x = (view.step + 1) as f64 / steps * (width - 1.0);
-        dots.line((x, 0.0), (x, height - 1.0), Some(1), Rank::Ground, Ink::quiet());
+        dots.line((x, 0.0), (x, height - 1.0), Some(1), Rank::Ground, TerminalInk::quiet());
     }
     dots.draw(plot, buffer, view.ink.fine);
     label_x(&axes, document.window_steps, plot, buffer);
@@ -84,15 +84,15 @@ fn lines(view: &View, axes: &Axes, curves: &[Vec<f64>], before: &[Vec<f64>], dot
     if curves.len() > 1 {
         let mut edge = axes.path(&quantiles(curves, BAND[1]));
         edge.extend(axes.path(&quantiles(curves, BAND[0])).into_iter().rev());
-        dots.fill(&edge, 2, Rank::Area, accent.patch(Ink::quiet()));
+        dots.fill(&edge, 2, Rank::Area, accent.patch(TerminalInk::quiet()));
     }
     if !before.is_empty() {
-        dots.path(&axes.path(&quantiles(before, 0.5)), Some(3), Rank::Behind, Ink::quiet());
+        dots.path(&axes.path(&quantiles(before, 0.5)), Some(3), Rank::Behind, TerminalInk::quiet());
     }
     if curves.len() > 1
         && let Some(own) = curves.get(view.seed)
     {
-        dots.path(&axes.path(own), Some(1), Rank::Line, Ink::strong());
+        dots.path(&axes.path(own), Some(1), Rank::Line, TerminalInk::strong());
     }
     dots.path(&axes.path(&quantiles(curves, 0.5)), None, Rank::Front, accent);
 }
@@ -103,21 +103,24 @@ fn signs(view: &View, seeds: usize, before: bool, wide: bool) -> Vec<Span<'stati
     let mut signs = if seeds > 1 {
         vec![
             Span::styled("━ ", accent),
-            Span::styled(if wide { format!("median of {seeds}  ") } else { "median  ".to_owned() }, Ink::quiet()),
-            Span::styled("░ ", accent.patch(Ink::quiet())),
-            Span::styled("10–90 %  ", Ink::quiet()),
+            Span::styled(
+                if wide { format!("median of {seeds}  ") } else { "median  ".to_owned() },
+                TerminalInk::quiet(),
+            ),
+            Span::styled("░ ", accent.patch(TerminalInk::quiet())),
+            Span::styled("10–90 %  ", TerminalInk::quiet()),
         ]
     } else {
         Vec::new()
     };
-    let (sign, style) = if seeds > 1 { ("┈ ", Ink::strong()) } else { ("━ ", accent) };
+    let (sign, style) = if seeds > 1 { ("┈ ", TerminalInk::strong()) } else { ("━ ", accent) };
     let seed = view.seed_run().map_or(0, |seed| seed.learned.seed);
-    signs.extend([Span::styled(sign, style), Span::styled(format!("seed {seed}"), Ink::quiet())]);
+    signs.extend([Span::styled(sign, style), Span::styled(format!("seed {seed}"), TerminalInk::quiet())]);
     if view.document().is_some_and(|document| !document.swaps.is_empty()) {
-        signs.extend([Span::styled("  ┊ ", view.ink.warning()), Span::styled("reward swapped", Ink::quiet())]);
+        signs.extend([Span::styled("  ┊ ", view.ink.warning()), Span::styled("reward swapped", TerminalInk::quiet())]);
     }
     if before {
-        signs.extend([Span::styled("  ╌ ", Ink::quiet()), Span::styled("before", Ink::quiet())]);
+        signs.extend([Span::styled("  ╌ ", TerminalInk::quiet()), Span::styled("before", TerminalInk::quiet())]);
     }
     signs
 }
@@ -129,10 +132,10 @@ fn label_y(axes: &Axes, plot: Rect, buffer: &mut Buffer, dots: &mut Dots) {
         let width = (columns(&text) as u16).min(LEFT - 1);
         let row = plot.y + (y / 4.0) as u16;
         let place = Rect { x: plot.x - 1 - width, y: row.min(plot.y + plot.height - 1), width, height: 1 };
-        write(&Line::styled(text, Ink::quiet()), place, buffer);
+        write(&Line::styled(text, TerminalInk::quiet()), place, buffer);
         let dash = if at == 0.0 { 1 } else { 0 };
         for x in (0..axes.width as usize).step_by(if dash == 1 { 2 } else { 8 }) {
-            dots.dot((x as f64, y), Rank::Ground, Ink::quiet());
+            dots.dot((x as f64, y), Rank::Ground, TerminalInk::quiet());
         }
     }
 }
@@ -149,7 +152,7 @@ fn label_x(axes: &Axes, window_steps: u64, plot: Rect, buffer: &mut Buffer) {
         let x = if at == 0.0 { row.x } else { column(at).saturating_sub(width / 2).min(end.saturating_sub(width)) };
         if x >= free {
             write(
-                &Line::styled(text, Ink::quiet()),
+                &Line::styled(text, TerminalInk::quiet()),
                 Rect { x, width: width.min(end.saturating_sub(x)), ..row },
                 buffer,
             );

@@ -5,7 +5,7 @@ use ratatui_core::layout::Rect;
 use ratatui_core::style::Style;
 use ratatui_core::text::{Line, Span};
 
-use super::ink::Ink;
+use super::ink::TerminalInk;
 use super::lines::{heading, nothing, write_all};
 use super::view::View;
 use super::words::{fit, lines};
@@ -45,7 +45,7 @@ fn found(view: &View, width: u16) -> Vec<Line<'static>> {
             let code = text.strip_prefix(&finding.code).filter(|_| row == 0);
             out.push(match code {
                 Some(rest) => {
-                    let code = Span::styled(finding.code.clone(), Ink::strong().patch(view.ink.warning()));
+                    let code = Span::styled(finding.code.clone(), TerminalInk::strong().patch(view.ink.warning()));
                     Line::from(vec![code, Span::raw(rest.to_owned())])
                 }
                 None => Line::raw(format!("  {text}")),
@@ -55,13 +55,13 @@ fn found(view: &View, width: u16) -> Vec<Line<'static>> {
         out.extend(
             lines(&help, usize::from(width).saturating_sub(4))
                 .into_iter()
-                .map(|text| Line::styled(format!("  {text}"), Ink::quiet())),
+                .map(|text| Line::styled(format!("  {text}"), TerminalInk::quiet())),
         );
     }
     // What a cheat would earn, once the save was tried out.
     let exploits = document.checked.as_ref().and_then(|checked| checked.exploits.as_ref());
     let sentence = printable(exploits.map_or("", |exploits| &exploits.sentence));
-    out.extend(lines(&sentence, usize::from(width)).into_iter().map(|text| Line::styled(text, Ink::quiet())));
+    out.extend(lines(&sentence, usize::from(width)).into_iter().map(|text| Line::styled(text, TerminalInk::quiet())));
     out
 }
 
@@ -75,7 +75,7 @@ fn error_lines(view: &View, width: u16) -> Vec<Line<'static>> {
             Some(at) => {
                 Line::from(vec![Span::raw(line[..at].to_owned()), Span::styled(line[at..].to_owned(), view.ink.bad())])
             }
-            None if line.starts_with("error") => Line::styled(line, Ink::strong().patch(view.ink.bad())),
+            None if line.starts_with("error") => Line::styled(line, TerminalInk::strong().patch(view.ink.bad())),
             None => Line::styled(line, Style::new()),
         }
     });

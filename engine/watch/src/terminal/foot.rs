@@ -4,7 +4,7 @@ use ratatui_core::buffer::Buffer;
 use ratatui_core::layout::Rect;
 use ratatui_core::text::{Line, Span};
 
-use super::ink::Ink;
+use super::ink::TerminalInk;
 use super::keys::KEYS;
 use super::lines::{ends, heading, write, write_all};
 use super::view::{SPEEDS, View};
@@ -24,7 +24,7 @@ pub(super) fn head(view: &View, area: Rect, buffer: &mut Buffer) {
         None => "engine watch".to_owned(),
     };
     let status = status(view, usize::from(area.width).saturating_sub(columns(&name) + 2));
-    ends(vec![Span::styled(name, Ink::strong())], status, Rect { height: 1, ..area }, buffer);
+    ends(vec![Span::styled(name, TerminalInk::strong())], status, Rect { height: 1, ..area }, buffer);
     let second = Rect { y: area.y + 1, height: 1, ..area };
     write(&Line::from(figures(view, area.width >= 100)), second, buffer);
 }
@@ -36,7 +36,7 @@ fn status(view: &View, width: usize) -> Line<'static> {
     } else if view.shown.error.is_some() {
         Line::styled(fit("the last save has a mistake", width), view.ink.bad())
     } else {
-        Line::styled(text, Ink::quiet())
+        Line::styled(text, TerminalInk::quiet())
     }
 }
 
@@ -52,13 +52,13 @@ fn figures(view: &View, wide: bool) -> Vec<Span<'static>> {
     let number = seed.learned.seed;
     // Combined policies learn nothing.
     let mut spans = if seed.learned.steps == 0 {
-        vec![Span::styled(format!("seed {number}"), Ink::quiet())]
+        vec![Span::styled(format!("seed {number}"), TerminalInk::quiet())]
     } else {
         let all = Span::raw(format!("{count} of {} learned", shown.run.seeds.len()));
-        vec![all, Span::styled(format!(" · seed {number}: "), Ink::quiet()), Span::raw(own)]
+        vec![all, Span::styled(format!(" · seed {number}: "), TerminalInk::quiet()), Span::raw(own)]
     };
     if let Some(test) = &seed.test {
-        spans.push(Span::styled("; test: ", Ink::quiet()));
+        spans.push(Span::styled("; test: ", TerminalInk::quiet()));
         let unit = if wide { "failures per 1,000 steps" } else { "failures/1,000" };
         spans.push(Span::raw(format!("{} {unit}", typeset(test.failures_per_1000))));
         if let Some(laps) = test.laps {
@@ -74,7 +74,7 @@ fn figures(view: &View, wide: bool) -> Vec<Span<'static>> {
 /// The shown step; the page's address and as many keys as there is room for.
 pub(super) fn foot(view: &View, area: Rect, buffer: &mut Buffer) {
     if view.record().is_some() {
-        ends(moment(view), Line::styled(playing(view), Ink::quiet()), Rect { height: 1, ..area }, buffer);
+        ends(moment(view), Line::styled(playing(view), TerminalInk::quiet()), Rect { height: 1, ..area }, buffer);
     }
     let all = usize::from(area.width);
     // An address without its end is of no use; the help has it whole.
@@ -91,11 +91,16 @@ pub(super) fn foot(view: &View, area: Rect, buffer: &mut Buffer) {
         used += width;
         keys.splice(
             0..0,
-            [Span::raw("  "), Span::styled(*key, Ink::strong()), Span::raw(" "), Span::styled(*name, Ink::quiet())],
+            [
+                Span::raw("  "),
+                Span::styled(*key, TerminalInk::strong()),
+                Span::raw(" "),
+                Span::styled(*name, TerminalInk::quiet()),
+            ],
         );
     }
     let second = Rect { y: area.y + 1, height: 1, ..area };
-    ends(vec![Span::styled(address, Ink::quiet())], Line::from(keys), second, buffer);
+    ends(vec![Span::styled(address, TerminalInk::quiet())], Line::from(keys), second, buffer);
 }
 
 fn playing(view: &View) -> String {
@@ -108,16 +113,16 @@ fn moment(view: &View) -> Vec<Span<'static>> {
     let phase = if view.phase == Phase::Learning { "learning" } else { "test" };
     let time_s = (view.step + 1) as f64 * document.period_s;
     let mut spans = vec![
-        Span::styled(format!("{phase}, step "), Ink::quiet()),
+        Span::styled(format!("{phase}, step "), TerminalInk::quiet()),
         Span::raw(whole(view.step as u64)),
-        Span::styled(format!(" of {} · ", whole(view.story.steps)), Ink::quiet()),
+        Span::styled(format!(" of {} · ", whole(view.story.steps)), TerminalInk::quiet()),
         Span::raw(format!("{time_s:.1} s")),
-        Span::styled(" · reward ", Ink::quiet()),
+        Span::styled(" · reward ", TerminalInk::quiet()),
         Span::raw(signed(record.reward)),
     ];
     for (event, word) in [(record.contact, "contact"), (record.fallen, "fallen"), (record.recover, "recovers")] {
         if event {
-            spans.extend([Span::styled(" · ", Ink::quiet()), Span::styled(word, view.ink.bad())]);
+            spans.extend([Span::styled(" · ", TerminalInk::quiet()), Span::styled(word, view.ink.bad())]);
         }
     }
     spans
@@ -128,14 +133,16 @@ pub(super) fn help(view: &View, area: Rect, buffer: &mut Buffer) {
     let inner = heading("Keys", Vec::new(), area, buffer);
     let mut lines: Vec<Line<'_>> = KEYS
         .iter()
-        .map(|(key, _, words)| Line::from(vec![Span::styled(format!("{key:>10}  "), Ink::strong()), Span::raw(*words)]))
+        .map(|(key, _, words)| {
+            Line::from(vec![Span::styled(format!("{key:>10}  "), TerminalInk::strong()), Span::raw(*words)])
+        })
         .collect();
     lines.push(Line::default());
     let more = [
         "Save the script, its world or its filters: all seeds learn again (--keep: on).",
         "The page in a browser is at",
     ];
-    lines.extend(more.map(|words| Line::styled(words, Ink::quiet())));
+    lines.extend(more.map(|words| Line::styled(words, TerminalInk::quiet())));
     lines.push(Line::raw(view.address.clone()));
     write_all(&lines, view.scroll, inner, buffer);
 }

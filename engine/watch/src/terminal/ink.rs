@@ -13,14 +13,14 @@ const BAD: [Color; 5] = [Color::Red, Color::Yellow, Color::Magenta, Color::Light
 
 /// What the terminal can show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Ink {
+pub struct TerminalInk {
     /// Whether colours may be used; without them, rules are told apart by letters.
     pub colour: bool,
     /// Whether the font has dots of eight to a cell; without them, half blocks are drawn.
     pub fine: bool,
 }
 
-impl Ink {
+impl TerminalInk {
     /// As the environment says: no colours under `NO_COLOR`, no fine dots on the console of Linux.
     #[must_use]
     pub fn of_environment() -> Self {
@@ -89,14 +89,17 @@ mod tests {
     fn rules_that_reward_are_green_and_the_others_are_not() {
         let rule = |value| RuleView { name: String::new(), line: 1, lines: 1, value };
         let rules = [rule(Some(-1.0)), rule(Some(0.5)), rule(None), rule(Some(1.0))];
-        let ink = Ink { colour: true, fine: true };
+        let ink = TerminalInk { colour: true, fine: true };
         let colours: Vec<_> = (0..4).map(|index| ink.rule(&rules, index).fg).collect();
         assert_eq!(colours, [Color::Red, Color::Green, Color::Yellow, Color::LightGreen].map(Some));
-        assert_eq!(Ink { colour: false, fine: true }.rule(&rules, 0), Style::new());
+        assert_eq!(TerminalInk { colour: false, fine: true }.rule(&rules, 0), Style::new());
     }
 
     #[test]
     fn without_colours_a_rule_has_a_letter() {
-        assert_eq!((Ink { colour: false, fine: true }.mark(1), Ink { colour: true, fine: true }.mark(1)), ('b', '•'));
+        assert_eq!(
+            (TerminalInk { colour: false, fine: true }.mark(1), TerminalInk { colour: true, fine: true }.mark(1)),
+            ('b', '•')
+        );
     }
 }

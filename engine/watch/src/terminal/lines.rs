@@ -5,19 +5,19 @@ use ratatui_core::layout::Rect;
 use ratatui_core::text::{Line, Span};
 use ratatui_core::widgets::Widget;
 
-use super::ink::Ink;
+use super::ink::TerminalInk;
 use super::words::{columns, fit};
 
 /// A panel's heading with a thin line to its right; the room below comes back.
 pub(super) fn heading(title: &str, notes: Vec<Span<'_>>, area: Rect, buffer: &mut Buffer) -> Rect {
-    let mut spans = vec![Span::styled(title.to_owned(), Ink::strong())];
+    let mut spans = vec![Span::styled(title.to_owned(), TerminalInk::strong())];
     for note in notes {
         spans.push(Span::raw("  "));
         spans.push(note);
     }
     let used: usize = spans.iter().map(Span::width).sum();
     let rest = usize::from(area.width).saturating_sub(used + 1);
-    spans.push(Span::styled(format!(" {}", "─".repeat(rest)), Ink::quiet()));
+    spans.push(Span::styled(format!(" {}", "─".repeat(rest)), TerminalInk::quiet()));
     write(&Line::from(spans), Rect { height: 1.min(area.height), ..area }, buffer);
     Rect { y: area.y + 1.min(area.height), height: area.height.saturating_sub(1), ..area }
 }
@@ -37,7 +37,7 @@ pub(super) fn write_all(lines: &[Line<'_>], scroll: usize, area: Rect, buffer: &
         let at = Rect { y: area.y + row as u16, height: 1, ..area };
         let hidden = lines.len() - scroll - row;
         if row + 1 == room && hidden > 1 {
-            write(&Line::styled(format!("… {hidden} more lines (Tab, PgDn)"), Ink::quiet()), at, buffer);
+            write(&Line::styled(format!("… {hidden} more lines (Tab, PgDn)"), TerminalInk::quiet()), at, buffer);
         } else {
             write(line, at, buffer);
         }
@@ -58,6 +58,6 @@ pub(super) fn nothing(words: &str, area: Rect, buffer: &mut Buffer) {
     let x = area.x + (area.width.saturating_sub(columns(&text) as u16)) / 2;
     let at = Rect { x, y: area.y + area.height / 2, width: area.width.saturating_sub(x - area.x), height: 1 };
     if area.height > 0 {
-        write(&Line::styled(text, Ink::quiet()), at, buffer);
+        write(&Line::styled(text, TerminalInk::quiet()), at, buffer);
     }
 }

@@ -34,7 +34,7 @@ use std::time::{Duration, Instant};
 
 use crossterm::event::{self, Event};
 
-pub use ink::Ink;
+pub use ink::TerminalInk;
 pub use keys::Wish;
 pub use player::{Moment, Question};
 pub use screen::draw;
@@ -82,7 +82,7 @@ pub fn show(board: &Board, asker: &Asker, address: &str, stop: &Arc<AtomicBool>)
 }
 
 fn follow(tty: &mut Tty, board: &Board, asker: &Asker, address: &str, stop: &AtomicBool) -> Result<()> {
-    let (mut view, player) = (View::new(address, Ink::of_environment()), Player::start());
+    let (mut view, player) = (View::new(address, TerminalInk::of_environment()), Player::start());
     let (mut last, mut stale) = (Instant::now(), true);
     while !stop.load(Ordering::Relaxed) {
         if let Some(shown) = board.shown(view.shown.number) {

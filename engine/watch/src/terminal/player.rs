@@ -36,7 +36,7 @@ pub struct Moment {
 pub(super) type Answer = (Question, Option<Arc<Moment>>);
 
 #[derive(Default)]
-struct Desk {
+struct PlayerDesk {
     asked: Option<Question>,
     answered: Option<Answer>,
     over: bool,
@@ -45,7 +45,7 @@ struct Desk {
 /// Answers until it is dropped.
 #[derive(Default)]
 pub(super) struct Player {
-    desk: Arc<(Mutex<Desk>, Condvar)>,
+    desk: Arc<(Mutex<PlayerDesk>, Condvar)>,
 }
 
 impl Question {
@@ -98,19 +98,19 @@ impl Drop for Player {
     }
 }
 
-fn lock(desk: &Mutex<Desk>) -> MutexGuard<'_, Desk> {
+fn lock(desk: &Mutex<PlayerDesk>) -> MutexGuard<'_, PlayerDesk> {
     desk.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The next question; none at the end.
-fn next((desk, changed): &(Mutex<Desk>, Condvar)) -> Option<Question> {
+fn next((desk, changed): &(Mutex<PlayerDesk>, Condvar)) -> Option<Question> {
     let waited = changed.wait_while(lock(desk), |desk| desk.asked.is_none() && !desk.over);
     let mut desk = waited.unwrap_or_else(PoisonError::into_inner);
     if desk.over { None } else { desk.asked.take() }
 }
 
 /// Answers questions about one phase; the first one about another comes back.
-fn play(first: &Question, desk: &(Mutex<Desk>, Condvar)) -> Option<Question> {
+fn play(first: &Question, desk: &(Mutex<PlayerDesk>, Condvar)) -> Option<Question> {
     let (plan, mut question) = (&first.run.plan, first.clone());
     let (Some(seed), Some(ledger)) = (first.run.seeds.get(first.seed), first.ledger()) else { return next(desk) };
     let seed = seed.learned.seed;

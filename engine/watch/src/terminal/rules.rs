@@ -5,7 +5,7 @@ use ratatui_core::layout::Rect;
 use ratatui_core::style::{Modifier, Style};
 use ratatui_core::text::{Line, Span};
 
-use super::ink::Ink;
+use super::ink::TerminalInk;
 use super::lines::{heading, write, write_all};
 use super::story::part;
 use super::view::View;
@@ -31,9 +31,9 @@ pub(super) fn draw(view: &View, area: Rect, buffer: &mut Buffer) {
     let inner = heading("Rules", Vec::new(), area, buffer);
     let over =
         Rect { x: area.x + 6, width: (table_width as u16).saturating_sub(4).min(area.width - 6), height: 1, ..area };
-    write(&Line::styled(format!("{}  ", &head[4..]), Ink::quiet()), over, buffer);
+    write(&Line::styled(format!("{}  ", &head[4..]), TerminalInk::quiet()), over, buffer);
     if document.rules.is_empty() {
-        write(&Line::styled("this behaviour has no rules", Ink::quiet()), inner, buffer);
+        write(&Line::styled("this behaviour has no rules", TerminalInk::quiet()), inner, buffer);
         return;
     }
     let parts: Vec<Vec<u32>> = (0..document.rules.len()).map(|rule| view.story.parts(rule, rest)).collect();
@@ -47,7 +47,7 @@ pub(super) fn draw(view: &View, area: Rect, buffer: &mut Buffer) {
             let (fired, style) = (view.fired(rule), view.ink.rule(&document.rules, rule));
             let name = fit(&known.name, name_width);
             let pad = " ".repeat(name_width - columns(&name));
-            let name_style = if fired { Ink::strong().add_modifier(Modifier::REVERSED) } else { Style::new() };
+            let name_style = if fired { TerminalInk::strong().add_modifier(Modifier::REVERSED) } else { Style::new() };
             let adds = known.value.map_or_else(|| "varies".to_owned(), signed);
             let count = whole(view.story.fired.get(rule).copied().unwrap_or(0));
             let sum = total(view.story.totals.get(rule).copied().unwrap_or(0.0));
@@ -55,7 +55,7 @@ pub(super) fn draw(view: &View, area: Rect, buffer: &mut Buffer) {
             let mut spans = vec![
                 Span::styled(format!("{} ", view.ink.chip(rule)), style),
                 Span::styled(name, name_style),
-                Span::styled(numbers, if fired { Ink::strong() } else { Style::new() }),
+                Span::styled(numbers, if fired { TerminalInk::strong() } else { Style::new() }),
             ];
             spans.extend(over_time(&parts[rule], most, now, style, known.value.is_none(), view.ink.fine));
             Line::from(spans)
@@ -79,9 +79,9 @@ fn over_time(parts: &[u32], most: u32, now: usize, style: Style, varies: bool, f
     };
     let spans = parts.iter().enumerate().map(|(index, count)| {
         let (glyph, style) = match (index == now, *count) {
-            (true, 0) => ('│', Ink::strong()),
+            (true, 0) => ('│', TerminalInk::strong()),
             (true, _) => (glyph(*count), style.add_modifier(Modifier::REVERSED)),
-            (false, 0) => (glyph(0), Ink::quiet()),
+            (false, 0) => (glyph(0), TerminalInk::quiet()),
             (false, _) => (glyph(*count), style),
         };
         Span::styled(glyph.to_string(), style)

@@ -5,7 +5,7 @@ use ratatui_core::layout::Rect;
 use ratatui_core::style::Style;
 use ratatui_core::text::{Line, Span};
 
-use super::ink::Ink;
+use super::ink::TerminalInk;
 use super::lines::{heading, nothing, write, write_all};
 use super::view::View;
 use super::words::{fit, motion, side, signed};
@@ -21,7 +21,7 @@ pub(super) fn height(view: &View) -> u16 {
 }
 
 pub(super) fn draw(view: &View, area: Rect, buffer: &mut Buffer) {
-    let inner = heading("This step", vec![Span::styled(whole(view.step as u64), Ink::quiet())], area, buffer);
+    let inner = heading("This step", vec![Span::styled(whole(view.step as u64), TerminalInk::quiet())], area, buffer);
     if view.record().is_none() {
         nothing("no step is recorded", inner, buffer);
         return;
@@ -46,7 +46,7 @@ fn lines(view: &View, width: usize) -> Vec<Line<'static>> {
     let beams = document.scan.beams;
     let entry = |name: &str, words: String| {
         let words = fit(&words, width.saturating_sub(9));
-        Line::from(vec![Span::styled(format!("{name:<9}"), Ink::quiet()), Span::raw(words)])
+        Line::from(vec![Span::styled(format!("{name:<9}"), TerminalInk::quiet()), Span::raw(words)])
     };
     let action = document.actions.get(usize::from(record.action)).map_or_else(String::new, |action| motion(*action));
     let mut lines = vec![
@@ -60,13 +60,13 @@ fn lines(view: &View, width: usize) -> Vec<Line<'static>> {
         let fired = view.fired(rule);
         // Of a reward that was swapped later, the step's own rule of this name.
         let reasons = view.moment().and_then(|moment| moment.reasons.rules.iter().find(|why| why.name == known.name));
-        let style = if fired { Ink::strong() } else { Ink::quiet() };
+        let style = if fired { TerminalInk::strong() } else { TerminalInk::quiet() };
         let words = reasons
             .map_or_else(|| if fired { "fired".to_owned() } else { "silent".to_owned() }, |why| said(why, fired));
         lines.push(Line::from(vec![
             Span::styled(format!("{} ", view.ink.chip(rule)), view.ink.rule(&document.rules, rule)),
             Span::styled(fit(&known.name, width.saturating_sub(12).min(30)), style),
-            Span::styled(format!("  {words}"), if fired { Style::new() } else { Ink::quiet() }),
+            Span::styled(format!("  {words}"), if fired { Style::new() } else { TerminalInk::quiet() }),
         ]));
         let mut facts: Vec<String> = reasons
             .iter()
@@ -78,7 +78,7 @@ fn lines(view: &View, width: usize) -> Vec<Line<'static>> {
         lines.extend(
             facts
                 .into_iter()
-                .map(|words| Line::styled(format!("  {}", fit(&words, width.saturating_sub(2))), Ink::quiet())),
+                .map(|words| Line::styled(format!("  {}", fit(&words, width.saturating_sub(2))), TerminalInk::quiet())),
         );
     }
     lines
@@ -128,11 +128,11 @@ fn cells(view: &View) -> Vec<Line<'static>> {
     }
     let row = |cells: &[bool]| {
         let cell = |filled: &bool| {
-            if *filled { Span::styled("██", view.ink.accent()) } else { Span::styled("··", Ink::quiet()) }
+            if *filled { Span::styled("██", view.ink.accent()) } else { Span::styled("··", TerminalInk::quiet()) }
         };
         Line::from(cells.iter().map(cell).collect::<Vec<_>>())
     };
     let mut lines: Vec<Line<'static>> = moment.reasons.next_state.cells.chunks(columns.max(1)).map(row).collect();
-    lines.push(Line::styled("grid", Ink::quiet()));
+    lines.push(Line::styled("grid", TerminalInk::quiet()));
     lines
 }

@@ -6,7 +6,7 @@ use insight::page::Document;
 
 /// One firing of a rule.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Mark {
+pub(super) struct StoryMark {
     pub step: usize,
     pub rule: usize,
     /// Where the robot was then, metres.
@@ -25,7 +25,7 @@ pub(super) struct Story {
     /// By rule: the sum of what it added.
     pub totals: Vec<f64>,
     /// Firings in their order; `fn reward` speaks at nearly every step and leaves none.
-    pub marks: Vec<Mark>,
+    pub marks: Vec<StoryMark>,
     /// By leg of learning: its first step, and where each of its rules stands among the plan's own.
     legs: Vec<(usize, Vec<Option<usize>>)>,
 }
@@ -49,7 +49,7 @@ impl Story {
                 story.fired[rule] += 1;
                 story.totals[rule] += value;
                 if document.rules[rule].value.is_some() {
-                    story.marks.push(Mark { step, rule, place_m: (record.pose.x_m, record.pose.y_m) });
+                    story.marks.push(StoryMark { step, rule, place_m: (record.pose.x_m, record.pose.y_m) });
                 }
             }
         }
@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn marks_are_found_on_both_sides() {
-        let mark = |step, rule| Mark { step, rule, place_m: (0.0, 0.0) };
+        let mark = |step, rule| StoryMark { step, rule, place_m: (0.0, 0.0) };
         let story = Story { kept: 100, marks: vec![mark(3, 0), mark(3, 1), mark(60, 0)], ..Story::default() };
         assert_eq!([story.mark_beside(3, true), story.mark_beside(60, false)], [Some(60), Some(3)]);
         assert_eq!([story.mark_beside(60, true), story.mark_beside(3, false)], [None, None]);

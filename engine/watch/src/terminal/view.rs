@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::ink::Ink;
+use super::ink::TerminalInk;
 use super::player::{Answer, Moment, Question};
 use super::story::Story;
 use crate::{Shown, ShownRun, WatchedSeed};
@@ -36,7 +36,7 @@ impl Panel {
 pub struct View {
     pub(super) shown: Shown,
     pub(super) address: String,
-    pub(super) ink: Ink,
+    pub(super) ink: TerminalInk,
     pub(super) seed: usize,
     pub(super) phase: Phase,
     /// The phase that the reader chose; another one is shown while that has no steps.
@@ -60,7 +60,7 @@ pub struct View {
 impl View {
     /// A screen before the first run; the page is at `address`.
     #[must_use]
-    pub fn new(address: impl Into<String>, ink: Ink) -> Self {
+    pub fn new(address: impl Into<String>, ink: TerminalInk) -> Self {
         Self {
             shown: Shown::default(),
             address: address.into(),

@@ -8,7 +8,7 @@ use ratatui_core::style::{Modifier, Style};
 use ratatui_core::text::Span;
 
 use super::dots::{Dot, Dots, Rank};
-use super::ink::Ink;
+use super::ink::TerminalInk;
 use super::lines::{heading, nothing};
 use super::view::View;
 use engine::experiment::Record;
@@ -58,14 +58,14 @@ pub(super) fn draw(view: &View, area: Rect, buffer: &mut Buffer) {
     let Some(document) = view.document() else { return };
     let mut dots = Dots::new(area.width, area.height.saturating_sub(1));
     let map = Map::new(document.world.bounds_m, dots.size());
-    let inner = heading("World", vec![Span::styled(scale_bar(&map), Ink::quiet())], area, buffer);
+    let inner = heading("World", vec![Span::styled(scale_bar(&map), TerminalInk::quiet())], area, buffer);
     if inner.height < 3 {
         nothing("no room for the world", inner, buffer);
         return;
     }
     if let Some(route) = &document.world.route_m {
         let places: Vec<Dot> = route.iter().map(|place| map.at((place[0], place[1]))).collect();
-        dots.path(&places, Some(1), Rank::Ground, Ink::quiet());
+        dots.path(&places, Some(1), Rank::Ground, TerminalInk::quiet());
     }
     for solid in &document.world.solids {
         stand(&map, solid, &mut dots);
@@ -100,7 +100,7 @@ fn stand(map: &Map, solid: &Outline, dots: &mut Dots) {
         }
         "glass" => dots.outline(&corners, Some(1), Rank::Ground, Style::new()),
         "paint" => dots.fill(&corners, 1, Rank::Ground, Style::new()),
-        _ => dots.outline(&corners, None, Rank::Ground, Ink::quiet()),
+        _ => dots.outline(&corners, None, Rank::Ground, TerminalInk::quiet()),
     }
 }
 
@@ -112,7 +112,7 @@ fn trail(view: &View, map: &Map, dots: &mut Dots) {
         let Some(record) = ledger.record(step) else { break };
         // Where it was lately counts more.
         let old = view.step - step > TRAIL_STEPS / 2;
-        let style = if old { view.ink.accent().patch(Ink::quiet()) } else { view.ink.accent() };
+        let style = if old { view.ink.accent().patch(TerminalInk::quiet()) } else { view.ink.accent() };
         if let Some(last) = last.filter(|last| !last.recover) {
             let (from, to) = (map.at((last.pose.x_m, last.pose.y_m)), map.at((record.pose.x_m, record.pose.y_m)));
             dots.line(from, to, None, Rank::Line, style);
@@ -136,7 +136,7 @@ fn laser(view: &View, document: &Document, map: &Map, record: &Record, dots: &mu
     if let Some(ranges_m) = ranges_m {
         let mut fan = vec![start];
         fan.extend(ranges_m.iter().enumerate().map(|(beam, range_m)| end(beam, f64::from(*range_m))));
-        dots.fill(&fan, 2, Rank::Area, view.ink.accent().patch(Ink::quiet()));
+        dots.fill(&fan, 2, Rank::Area, view.ink.accent().patch(TerminalInk::quiet()));
     }
     let nearest_m = f64::from(record.nearest_m);
     // Where nothing is in reach, no beam is the nearest.
@@ -150,7 +150,7 @@ fn laser(view: &View, document: &Document, map: &Map, record: &Record, dots: &mu
             .and_then(|ledger| view.story.fired_at(ledger, view.step).map(|(rule, _)| rule).last())
             .unwrap_or(0);
         let to = end(usize::from(beam), range_m.unwrap_or(nearest_m));
-        dots.line(start, to, None, Rank::Front, view.ink.rule(&document.rules, rule).patch(Ink::strong()));
+        dots.line(start, to, None, Rank::Front, view.ink.rule(&document.rules, rule).patch(TerminalInk::strong()));
     }
 }
 
@@ -163,8 +163,8 @@ fn movers(view: &View, document: &Document, map: &Map, dots: &mut Dots) {
         let pose = mover.pose_at(&layout.routes, time_s);
         for solid in &drawn.solids {
             let corners = map.corners(solid, (pose.x_m, pose.y_m, pose.yaw_rad));
-            dots.fill(&corners, 1, Rank::Line, Ink::strong());
-            dots.outline(&corners, None, Rank::Line, Ink::strong());
+            dots.fill(&corners, 1, Rank::Line, TerminalInk::strong());
+            dots.outline(&corners, None, Rank::Line, TerminalInk::strong());
         }
     }
 }
