@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use engine::diagnostic::{Diagnostic, Kind, Result};
 use engine::experiment::{Overrides, Phase, Plan, Progress, Spread, Summary, in_parallel, learn_into, test_into};
-use insight::record::{self, record};
+use insight::record::{check_recording, record};
 use insight::store::RunLog;
 use pack::Runnable;
 
@@ -75,7 +75,7 @@ fn check_record(path: &Path, seeds: &[u64]) -> Result<()> {
         let error = Diagnostic::new(Kind::Usage, "E-RECORD", "a recording is of one seed");
         return error.help("leave --seeds out, and choose the seed with --seed").into();
     }
-    record::check(path)
+    check_recording(path)
 }
 
 fn out(arguments: &RunArguments, name: &str, seeds: &[u64]) -> PathBuf {
