@@ -6,7 +6,7 @@
 //! | [`Sorted::quantile`] at 0.5 | 2.5 | the bands and the middle line of learning curves, in pictures and in the terminal: no jumps from window to window |
 //! | [`Sorted::midpoint_median`] | 2.5 | how far the best action of a state stands out, where policies are combined by priority |
 
-/// Numbers in ascending order; what is not a number comes last.
+/// Numbers in ascending order, as [`f64::total_cmp`] has it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sorted(Vec<f64>);
 
@@ -19,21 +19,21 @@ impl FromIterator<f64> for Sorted {
 }
 
 impl Sorted {
-    /// The first value that at least `share` of the values, 0 to 1, do not reach: the upper one of two in question, the
-    /// greatest at 1. `None` of nothing.
+    /// The value that a share of the values, 0 to 1, stays below: the upper one where it falls between two, the greatest
+    /// at 1. `None` without values.
     #[must_use]
     pub fn upper_quantile(&self, share: f64) -> Option<f64> {
         let at = (share * self.0.len() as f64).floor() as usize;
         self.0.get(at.min(self.0.len().checked_sub(1)?)).copied()
     }
 
-    /// The middle value, the upper one of two. `None` of nothing.
+    /// The middle value, the upper one of two. `None` without values.
     #[must_use]
     pub fn upper_median(&self) -> Option<f64> {
         self.upper_quantile(0.5)
     }
 
-    /// The value below which a share of the values, 0 to 1, lies, interpolated between its neighbours. `None` of nothing.
+    /// The value below which a share of the values, 0 to 1, lies, interpolated between its neighbours. `None` without values.
     #[must_use]
     pub fn quantile(&self, share: f64) -> Option<f64> {
         let at = share * self.0.len().checked_sub(1)? as f64;
@@ -41,7 +41,7 @@ impl Sorted {
         Some(low + (high - low) * (at - at.floor()))
     }
 
-    /// The middle value, halfway between two. `None` of nothing.
+    /// The middle value, halfway between two. `None` without values.
     ///
     /// It may differ from [`Sorted::quantile`] at 0.5 in the last bit.
     #[must_use]
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_has_no_middle_and_what_is_not_a_number_comes_last() {
+    fn without_values_there_is_no_middle_and_nan_comes_last() {
         let none = sorted(&[]);
         assert_eq!((none.upper_median(), none.quantile(0.5), none.midpoint_median()), (None, None, None));
         assert_eq!(sorted(&[f64::NAN, 1.0, 2.0]).upper_median(), Some(2.0));

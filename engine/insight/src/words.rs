@@ -3,11 +3,11 @@
 //! | function | -1234.5678 | where |
 //! |---|---|---|
 //! | [`short`] | `-1234.568` | the program's lines, findings: can be copied into a script |
-//! | [`typeset`] | `−1235` | the terminal of the live page, as the page itself writes |
+//! | [`typeset`] | `−1235` | the terminal of the live page, which writes as the page does |
 //! | [`spaced`], one place | `−1234.6` | pictures; from five digits on with thin spaces between thousands |
 //! | [`three_figures`] | `−1235` | values of states in pictures |
 //! | [`with_commas`], one place | `−1,234.6` | the page of the paper |
-//! | [`whole`] (counts) | `1,235` | the terminal of the live page |
+//! | [`whole`], of 1234 | `1,234` | counts in the terminal of the live page |
 //! | [`bounded`] | `-1235` | the gallery of packs, where strangers choose the number |
 
 /// At most three places, with a plain minus.
@@ -35,7 +35,7 @@ pub fn with_commas(value: f64, places: usize) -> String {
     format!("{minus}{}{part}", grouped(&whole, ","))
 }
 
-/// This many places, with thin spaces between thousands and a true minus; from a milliard on with an exponent.
+/// This many places, with thin spaces between thousands and a true minus; from a billion on with an exponent.
 #[must_use]
 pub fn spaced(value: f64, places: usize) -> String {
     if value.abs() >= 1e9 {

@@ -20,7 +20,7 @@ const LABEL: f64 = 12.0;
 const POLICY: &str = "default-src 'none'; img-src data:; style-src 'unsafe-inline'";
 const STYLE: &str = include_str!("gallery.css");
 
-/// A pack of the page, and what is known of its signature.
+/// A pack on the page, and what is known about its signature.
 pub struct Card<'a> {
     /// The pack.
     pub pack: &'a Pack,
@@ -28,7 +28,7 @@ pub struct Card<'a> {
     pub signed: SignatureLine,
 }
 
-/// What is said of a signature.
+/// What is known about a signature.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SignatureLine {
     /// In words.
@@ -37,7 +37,7 @@ pub struct SignatureLine {
     pub trusted: bool,
 }
 
-/// What to say of a pack's signature.
+/// Describes a pack's signature.
 #[must_use]
 pub fn signature_line(trust: &TrustStore, pack: &Pack, signature: Option<&Signature>) -> SignatureLine {
     let Some(signature) = signature else { return SignatureLine { text: "not signed".to_owned(), trusted: false } };

@@ -1,4 +1,4 @@
-//! The page: one file that needs nothing else, for a phone as for a desk, by day and by night.
+//! The page: one file that needs nothing else, for small and large screens, light and dark.
 
 use std::fmt::Write;
 
@@ -178,7 +178,7 @@ fn drawn(figure: &Figure) -> Markup {
     }
 }
 
-/// A document as the rest of a data address.
+/// A document, percent-encoded to follow the head of a `data:` address.
 struct Encoded<'a>(&'a str);
 
 impl std::fmt::Display for Encoded<'_> {

@@ -9,7 +9,7 @@ use tokio::sync::watch;
 use engine::diagnostic::{Diagnostic, Result, Severity};
 use engine::experiment::{Learned, Ledger, Plan, TestFigures};
 use insight::lint::Report;
-use insight::page::{Checked, Document, Finding, SeedData, SeedView};
+use insight::page::{CheckView, Document, FindingView, SeedData, SeedView};
 
 /// One seed of a run.
 #[derive(Debug)]
@@ -58,7 +58,7 @@ enum Message<'a> {
     Working { text: &'a str },
     Failed { text: String, blocks: Vec<String>, summary: Option<String>, error: serde_json::Value },
     Run { save: u64, done: bool, text: &'a str, document: &'a Document, before: Option<&'a Before> },
-    Checked { save: u64, findings: &'a [Finding], checked: &'a Checked },
+    Checked { save: u64, findings: &'a [FindingView], checked: &'a CheckView },
     Unchecked { save: u64, text: String },
 }
 
@@ -190,8 +190,8 @@ impl Board {
 
     /// Says what a check of the shown run found.
     pub(super) fn checked(&self, run: &SavedRun, report: &Report) {
-        let findings: Vec<Finding> = report.findings.iter().map(Finding::from).collect();
-        let checked = Checked::from(report);
+        let findings: Vec<FindingView> = report.findings.iter().map(FindingView::from).collect();
+        let checked = CheckView::from(report);
         if let Some(told) = self.lock().told.run.as_mut().filter(|told| told.run.save == run.save) {
             let document = (*told.document).clone();
             told.document =

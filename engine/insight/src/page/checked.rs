@@ -1,4 +1,4 @@
-//! What a check of the script found, and what its reward can be had for.
+//! What a check of the script found, and whether its reward can be earned by cheating.
 
 use serde::Serialize;
 
@@ -6,7 +6,7 @@ use crate::lint::{Exploits, Report, Severity};
 
 /// Something that a check of the script found.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Finding {
+pub struct FindingView {
     /// Its code.
     pub code: String,
     /// How bad it is.
@@ -21,18 +21,18 @@ pub struct Finding {
     pub help: Option<String>,
 }
 
-/// What trying the behaviour out came to; its findings stand in [`Document::findings`](super::Document::findings).
+/// The outcome of trying the behaviour out; its findings are in [`Document::findings`](super::Document::findings).
 #[derive(Debug, Clone, Serialize)]
-pub struct Checked {
+pub struct CheckView {
     /// Steps that were tried.
     pub steps: u64,
     /// How many findings there was no room for.
     pub left_out: usize,
-    /// What the reward can be had for; null where policies are combined or a step failed.
+    /// What cheats would earn; null if policies are combined or a step failed.
     pub exploits: Option<Exploits>,
 }
 
-impl From<&crate::lint::Finding> for Finding {
+impl From<&crate::lint::Finding> for FindingView {
     fn from(found: &crate::lint::Finding) -> Self {
         let said = |words: &String| Some(words.clone()).filter(|words| !words.is_empty());
         Self {
@@ -46,7 +46,7 @@ impl From<&crate::lint::Finding> for Finding {
     }
 }
 
-impl From<&Report> for Checked {
+impl From<&Report> for CheckView {
     fn from(report: &Report) -> Self {
         Self { steps: report.steps, left_out: report.left_out, exploits: report.exploits.clone() }
     }

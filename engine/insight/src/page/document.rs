@@ -1,8 +1,8 @@
-//! All that the page knows of a run: the plan's side of it. What each seed did stands in [`SeedView`].
+//! Everything that the page knows about a run, except what each seed did: that is [`SeedView`].
 
 use serde::Serialize;
 
-use super::checked::{Checked, Finding};
+use super::checked::{CheckView, FindingView};
 use super::ground::Ground;
 use super::seed::{SeedData, SeedView};
 use super::shot::Shot;
@@ -13,19 +13,19 @@ use engine::experiment::{Plan, WINDOW_STEPS};
 use engine::learner::Carry;
 use engine::settings::{SETTINGS, Settings, Value};
 
-/// The contract's number; a page shows only documents of its own.
+/// The version of the contract; a page shows only documents of its own version.
 const FORMAT: u32 = 2;
-/// Beams of the laser that are drawn, at most.
+/// The most beams of the laser that are drawn.
 const MOST_SCAN_BEAMS: usize = 37;
 /// The most bytes of tracks and pictures in one document; seeds beyond it have curve and policy only.
 const MOST_EMBEDDED_BYTES: usize = 2_300_000;
-/// Numbers in 16 bits reach this far from zero.
+/// The largest coordinate of a track, a little less than 16 bits can hold.
 const REACH: f64 = 32_000.0;
 
 /// One run, of one seed or many.
 #[derive(Debug, Clone, Serialize)]
 pub struct Document {
-    /// The contract's number.
+    /// The version of the contract.
     pub format: u32,
     /// The program's version.
     pub engine: &'static str,
@@ -37,7 +37,7 @@ pub struct Document {
     pub script: String,
     /// What stands in the world, from above.
     pub world: Ground,
-    /// Metres that 1 means in places of a track.
+    /// Length of one unit of a track's coordinates, metres.
     pub unit_m: f64,
     /// Half of the robot's length and width, metres.
     pub robot_half_m: [f64; 2],
@@ -63,10 +63,10 @@ pub struct Document {
     pub seeds: Vec<SeedView>,
     /// Moments with their pictures.
     pub shots: Vec<Shot>,
-    /// What reading the script found; what trying it out found too, where that was done.
-    pub findings: Vec<Finding>,
-    /// What trying it out came to; null if it was only read.
-    pub checked: Option<Checked>,
+    /// What reading the script found, and trying it out, where that was done.
+    pub findings: Vec<FindingView>,
+    /// The outcome of trying it out; null if it was only read.
+    pub checked: Option<CheckView>,
 }
 
 /// A swap of the reward while the robot learned.
@@ -132,7 +132,7 @@ impl Document {
         Ok(document)
     }
 
-    /// One seed with its steps, as a document that left them out is completed; in the form of a job that may find nothing.
+    /// One seed with its steps, to complete a document that left them out; `None` if there is no such seed.
     #[must_use]
     pub fn tracks_of(plan: &Plan, data: &SeedData<'_>) -> Option<Result<SeedView>> {
         let moments = Moments { shots: 0, scans: true, seeds: Some(1) };
@@ -187,7 +187,7 @@ impl Document {
             settings: settings(plan),
             seeds: Vec::new(),
             shots: Vec::new(),
-            findings: lint::read(plan).iter().map(Finding::from).collect(),
+            findings: lint::read(plan).iter().map(FindingView::from).collect(),
             checked: None,
         })
     }
@@ -195,7 +195,7 @@ impl Document {
     /// This document with what a full check found, instead of what reading the script did.
     #[must_use]
     pub fn with_check(self, report: &Report) -> Self {
-        Self { findings: report.findings.iter().map(Finding::from).collect(), checked: Some(report.into()), ..self }
+        Self { findings: report.findings.iter().map(FindingView::from).collect(), checked: Some(report.into()), ..self }
     }
 
     fn first_shown(&mut self, first: Option<usize>) {

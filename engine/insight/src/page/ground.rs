@@ -14,30 +14,30 @@ pub struct Ground {
     /// Least x and y, greatest x and y of all that is drawn, metres.
     pub bounds_m: [f64; 4],
     /// The solids, the lowest first.
-    pub solids: Vec<Outline>,
+    pub solids: Vec<SolidOutline>,
     /// The lap that the world's author had in mind, metres.
     pub route_m: Option<Vec<[f64; 2]>>,
-    /// What drives by itself, in the order of the world file.
+    /// Its movers, in the order of the world file.
     pub movers: Vec<MoverOutline>,
 }
 
-/// What drives by itself.
+/// A mover: what drives by itself.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MoverOutline {
     /// Its name in the world file.
     pub name: String,
     /// Its solids around its own origin, x forward.
-    pub solids: Vec<Outline>,
+    pub solids: Vec<SolidOutline>,
 }
 
 /// One solid.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Outline {
+pub struct SolidOutline {
     /// `wall` stops the robot, `ground` is driven on, `glass` stops it unseen by the laser, `paint` is flat.
     pub kind: &'static str,
     /// Its colour, for paint and prey.
     pub colour: [u8; 3],
-    /// Its corners, metres; none of a circle.
+    /// Its corners, metres; empty for a circle.
     pub corners_m: Vec<[f64; 2]>,
     /// x, y and radius of a circle, metres.
     pub circle_m: Option<[f64; 3]>,
@@ -60,7 +60,7 @@ impl Ground {
             let key = |solid: &Solid| (solid.collides, solid.bounds().1.z);
             key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal)
         });
-        let outline = |solid: &&Solid| Outline::new(solid, parts.materials.get(solid.material), &driven);
+        let outline = |solid: &&Solid| SolidOutline::new(solid, parts.materials.get(solid.material), &driven);
         let mover = |mover: &Mover| MoverOutline {
             name: mover.name.clone(),
             solids: mover.solids.iter().map(|solid| outline(&solid)).collect(),
@@ -75,7 +75,7 @@ impl Ground {
     }
 }
 
-impl Outline {
+impl SolidOutline {
     fn new(solid: &Solid, material: Option<&Material>, driven: &[[f64; 2]]) -> Self {
         let ramp = matches!(solid.shape, Shape::Ramp { .. });
         let kind = match solid {

@@ -7,7 +7,7 @@ use engine::digest::Digest;
 
 const HTML: &str = include_str!("web/index.html");
 const STYLE: &str = include_str!("web/style.css");
-/// In the order in which they use each other.
+/// Each after those that it uses.
 const SCRIPTS: &[&str] = &[
     include_str!("web/data.js"),
     include_str!("web/drawing.js"),
@@ -27,7 +27,7 @@ const SCRIPTS: &[&str] = &[
 pub struct Page {
     /// The file.
     pub html: String,
-    /// What the browser may run and load, as the header `Content-Security-Policy` says it.
+    /// What the browser may run and load: the value of the header `Content-Security-Policy`.
     pub policy: String,
 }
 

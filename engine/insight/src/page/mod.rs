@@ -27,9 +27,9 @@ mod seed;
 mod shot;
 mod track;
 
-pub use checked::{Checked, Finding};
+pub use checked::{CheckView, FindingView};
 pub use document::{Document, RuleView, SettingView};
-pub use ground::{Ground, MoverOutline, Outline};
+pub use ground::{Ground, MoverOutline, SolidOutline};
 pub use html::{Page, page};
 pub use seed::{SeedData, SeedView, StateRow};
 pub use shot::{Shot, ShotMaker, StagePicture, shot_of};

@@ -1,4 +1,4 @@
-//! Pictures small enough to stand in a page by the dozen, as addresses that hold them.
+//! Pictures small enough to stand in a page by the dozen, as `data:` addresses.
 
 use filter_api::Format;
 use image::codecs::jpeg::JpegEncoder;
@@ -11,7 +11,7 @@ use engine::diagnostic::{Diagnostic, Result};
 /// The quality of camera images: pixel noise would make them ten times as large without loss.
 const QUALITY: u8 = 82;
 
-/// A picture as a `data:` address: masks as they are (PNG), camera and grey images almost so (JPEG).
+/// A picture as a `data:` address: masks without loss (PNG), camera and grey images nearly so (JPEG).
 ///
 /// # Errors
 /// If the pixels do not fit the size.

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::shot::Shot;
-use super::track::{Moments, ScanShape, Source, Track};
+use super::track::{Moments, ScanShape, Track, TrackSource};
 use engine::diagnostic::Result;
 use engine::experiment::{Ledger, Phase, Plan, Tally, TestFigures, learned_at};
 use engine::learner::Policy;
@@ -11,12 +11,12 @@ use engine::learner::Policy;
 /// The most states of a seed in a document.
 const MOST_STATES: usize = 256;
 
-/// What is known of a seed.
+/// What is known about a seed.
 #[derive(Debug, Clone, Copy)]
 pub struct SeedData<'a> {
     /// The seed.
     pub seed: u64,
-    /// What was counted while learning; none for a behaviour that combines policies.
+    /// What was counted while learning; `None` for a behaviour that combines policies.
     pub tally: Option<&'a Tally>,
     /// What was learned.
     pub policy: Option<&'a Policy>,
@@ -39,13 +39,13 @@ pub struct SeedView {
     pub learned_at: Option<u64>,
     /// Reinforcement of each window.
     pub curve: Vec<f64>,
-    /// By window, what each rule added; nothing of a seed without steps.
+    /// What each rule added, window by window; empty for a seed without steps.
     pub by_rule: Vec<Vec<f64>>,
     /// The test's figures.
     pub test: Option<TestFigures>,
     /// How many states were met.
     pub states_met: usize,
-    /// The states that were met, by number; of very many, the most visited.
+    /// The states that were met, by number; if there are very many, the most visited.
     pub states: Vec<StateRow>,
     /// Steps of learning; null if this document leaves them out.
     pub learning: Option<Track>,
@@ -66,7 +66,7 @@ pub struct StateRow {
     pub best: usize,
     /// Its value.
     pub value: f64,
-    /// The value of each action; nothing of a seed without steps.
+    /// The value of each action; empty for a seed without steps.
     pub values: Vec<f64>,
 }
 
@@ -105,7 +105,7 @@ impl SeedView {
         scan: ScanShape,
         moments: Moments,
     ) -> Result<Vec<Shot>> {
-        let source = |phase, ledger| Source { plan, seed: data.seed, phase, ledger, unit_m, scan };
+        let source = |phase, ledger| TrackSource { plan, seed: data.seed, phase, ledger, unit_m, scan };
         let mut shots = Vec::new();
         if !data.learning.is_empty() {
             let (track, made) = source(Phase::Learning, data.learning).track(moments)?;
@@ -120,18 +120,18 @@ impl SeedView {
         Ok(shots)
     }
 
-    /// Size of the steps in the page, bytes, about.
+    /// Approximate size of the steps in the page, bytes.
     pub(super) fn bytes(&self) -> usize {
         [&self.learning, &self.tested].into_iter().flatten().map(Track::bytes).sum()
     }
 
-    /// What makes one seed worth more of a look than another: its failures.
+    /// How much a seed deserves a look: its failures in a million steps.
     pub(super) fn badness(&self) -> u64 {
         self.test.as_ref().map_or(0, |test| (test.failures_per_1000 * 1000.0) as u64)
     }
 }
 
-/// What the plan's own rules added in a window; rules that only earlier legs had come after them.
+/// What the plan's own rules added in a window; those that only earlier legs had follow them and are left out.
 fn by_rule(plan: &Plan, tally: &Tally, window: usize) -> Vec<f64> {
     tally.by_rule(window).iter().take(plan.behaviour.rules().len()).copied().collect()
 }

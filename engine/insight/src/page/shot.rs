@@ -88,7 +88,7 @@ impl ShotMaker<'_> {
 }
 
 impl Shot {
-    /// Its size in the page, bytes, about.
+    /// Its approximate size in the page, bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {
         1500 + self.stages.iter().map(|stage| stage.picture.len()).sum::<usize>()

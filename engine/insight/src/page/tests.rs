@@ -109,7 +109,7 @@ fn a_seed_beyond_those_that_bring_their_steps_has_its_curve() {
 }
 
 #[test]
-fn everything_that_drives_by_itself_is_where_it_was_when_the_steps_are_played_again() {
+fn every_mover_is_where_it_was_when_the_steps_are_played_again() {
     let mover = |name: &str, speed: f64, offset: f64| {
         format!(
             "\n[[mover]]\nname = \"{name}\"\nroute = \"lap\"\nspeed_m_per_s = {speed}\noffset_m = {offset}\n\

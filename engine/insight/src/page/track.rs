@@ -10,7 +10,7 @@ use engine::geometry::Pose;
 
 /// The most steps of a track; of more, the first and the last half of as many are kept.
 pub const MOST_TRACK_STEPS: usize = 12_000;
-/// Scans and pictures come from playing the steps again; so many are played, from the first on.
+/// Scans and pictures come from playing the steps again; at most this many are played, starting with the first.
 const MOST_PLAYED: usize = 20_000;
 
 /// Which steps bring pictures with them.
@@ -20,7 +20,7 @@ pub struct Moments {
     pub shots: usize,
     /// Whether scans are kept.
     pub scans: bool,
-    /// How many seeds bring their steps, from the first on; without it, the worst and then as many as fit.
+    /// How many seeds bring their steps, starting with the first; `None` for the worst seed and then as many as fit.
     pub seeds: Option<usize>,
 }
 
@@ -29,7 +29,7 @@ pub struct Moments {
 pub struct ScanShape {
     /// Beams of the laser.
     pub beams: usize,
-    /// Every so many of them are kept, from beam 0 on.
+    /// One beam in this many is kept, starting with beam 0.
     pub every: usize,
     /// How many are kept.
     pub kept: usize,
@@ -63,7 +63,7 @@ pub struct Track {
     pub scan: String,
 }
 
-/// Where one thing that drives by itself was, in the order of the world file.
+/// Where one mover was, step by step.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 #[allow(missing_docs, reason = "every field is documented in the table of the room")]
 pub struct MoverTrack {
@@ -92,7 +92,7 @@ struct Columns {
 }
 
 /// Where a track comes from.
-pub(super) struct Source<'a> {
+pub(super) struct TrackSource<'a> {
     pub plan: &'a Plan,
     pub seed: u64,
     pub phase: Phase,
@@ -101,7 +101,7 @@ pub(super) struct Source<'a> {
     pub scan: ScanShape,
 }
 
-impl Source<'_> {
+impl TrackSource<'_> {
     /// The track, with the moments that have pictures.
     pub(super) fn track(&self, moments: Moments) -> Result<(Track, Vec<Shot>)> {
         let spans = spans(self.ledger.len());
@@ -127,8 +127,7 @@ impl Source<'_> {
         std::iter::once((0, places(self.plan.first_leg()))).chain(swaps).collect()
     }
 
-    /// Where everything that drives by itself was at the end of a step: they go by the clock of the world alone, which
-    /// begins with the phase.
+    /// Where every mover was at the end of a step: movers follow the world's clock alone, which starts with the phase.
     fn movers_after(&self, step: usize) -> impl Iterator<Item = Pose> {
         let (layout, settings) = (&self.plan.layout, &self.plan.settings);
         let time_s = (step + 1) as f64 * settings.run.period_s * settings.movers.speed;
@@ -162,7 +161,7 @@ impl Source<'_> {
 }
 
 impl Columns {
-    fn add(&mut self, source: &Source<'_>, step: usize, places: &[Option<usize>]) {
+    fn add(&mut self, source: &TrackSource<'_>, step: usize, places: &[Option<usize>]) {
         let Some(record) = source.ledger.record(step) else { return };
         let place = |metres: f64| short(metres / source.unit_m);
         self.x.extend(place(record.pose.x_m));
@@ -218,7 +217,7 @@ impl Columns {
 }
 
 impl Track {
-    /// Its size in the page, bytes, about.
+    /// Its approximate size in the page, bytes.
     #[must_use]
     pub(super) fn bytes(&self) -> usize {
         let columns = [&self.x, &self.y, &self.yaw, &self.state, &self.next_state, &self.action, &self.flags];

@@ -9,7 +9,7 @@
 //! | `/prey` | foxglove.PoseInFrame | the prey, where there is one |
 //! | `/step` | JSON | state, action, reward by rule, recovery |
 //!
-//! Time is the robot's: step times period, the test after learning. Everything comes back from the ledger by playing it.
+//! Time is the robot's: step times period, the test after learning. Everything is recovered by playing the ledger back.
 
 use std::path::Path;
 
@@ -36,7 +36,7 @@ pub fn record(plan: &Plan, seed: u64, phases: &[(Phase, &Ledger)], image_every: 
 /// Checks that recording can begin: that this program can record, and that the folder is there.
 ///
 /// # Errors
-/// If not: what to do.
+/// If it cannot; the help says what to do.
 pub fn check_recording(path: &Path) -> Result<()> {
     if cfg!(not(feature = "mcap")) {
         let error = Diagnostic::new("E-RECORD-BUILD", "this engine was built without recording");
@@ -53,7 +53,7 @@ pub fn check_recording(path: &Path) -> Result<()> {
 /// Writes nothing: this program was built without recording.
 ///
 /// # Errors
-/// Always; how to build it with recording.
+/// Always; the help says how to build the program with recording.
 #[cfg(not(feature = "mcap"))]
 pub fn record(_: &Plan, _: u64, _: &[(Phase, &Ledger)], _: u64, path: &Path) -> Result<Recording> {
     check_recording(path)?;

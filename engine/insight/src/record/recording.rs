@@ -1,4 +1,4 @@
-//! What a recording came to.
+//! What a recording holds, for the person who asked for it.
 
 /// What was recorded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

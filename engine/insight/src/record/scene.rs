@@ -7,7 +7,7 @@ use foxglove::messages::{
 
 use engine::world::scene::{SceneParts, Shape, Solid};
 
-/// The frame of the world.
+/// The name of the world's coordinate frame.
 pub(super) const WORLD: &str = "world";
 
 /// All solids of a scene as one entity of the frame `world`.

@@ -16,7 +16,7 @@ use super::scene::{WORLD, pose, turned, update};
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Ledger, Phase, Plan, Playback, Snapshot, Step};
 
-/// The frames of the robot and of its laser.
+/// The names of the coordinate frames of the robot and of its laser.
 const ROBOT: &str = "robot";
 const LASER: &str = "laser";
 /// What `/step` holds.
@@ -123,7 +123,7 @@ impl Tape {
         Ok(())
     }
 
-    /// The present time of the robot.
+    /// The robot's time at this step.
     fn now(&self) -> (PartialMetadata, Timestamp) {
         let time_ns = (self.step as f64 * self.period_s * 1e9).round() as u64;
         let timestamp = Timestamp::new((time_ns / 1_000_000_000) as u32, (time_ns % 1_000_000_000) as u32);

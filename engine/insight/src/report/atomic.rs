@@ -36,7 +36,7 @@ mod tests {
     }
 
     #[test]
-    fn a_missing_folder_is_said_with_the_path() {
+    fn a_missing_folder_is_named_in_the_error() {
         let folder = tempfile::tempdir().unwrap();
         let error = write_atomic(&folder.path().join("none").join("a.png"), b"").unwrap_err();
         assert_eq!(error.code, "E-IO");

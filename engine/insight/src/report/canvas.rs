@@ -6,6 +6,14 @@ pub(super) const UNITS_PER_PX: i32 = 4;
 /// A place on the canvas, units, from the top left.
 pub(super) type Spot = (i32, i32);
 
+/// A place in pixels, between whole ones too.
+pub(super) type FineSpot = (f32, f32);
+
+/// A place in pixels.
+pub(super) fn fine((x, y): Spot) -> FineSpot {
+    (x as f32 / UNITS_PER_PX as f32, y as f32 / UNITS_PER_PX as f32)
+}
+
 /// Canvas units of a length in pixels.
 pub(super) fn units(px: f64) -> i32 {
     (px * f64::from(UNITS_PER_PX)).round() as i32
@@ -13,20 +21,20 @@ pub(super) fn units(px: f64) -> i32 {
 
 /// A colour and how much it covers.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Ink {
+pub(super) struct Tint {
     /// Red, green, blue.
     pub(super) rgb: [u8; 3],
     /// 0 is invisible, 1 covers.
     pub(super) alpha: f64,
 }
 
-impl Ink {
+impl Tint {
     /// A covering colour from 0xRRGGBB.
     pub(super) const fn hex(rgb: u32) -> Self {
         Self { rgb: [(rgb >> 16) as u8, (rgb >> 8) as u8, rgb as u8], alpha: 1.0 }
     }
 
-    /// This colour, thinner.
+    /// This colour, covering less.
     pub(super) const fn thin(self, alpha: f64) -> Self {
         Self { alpha, ..self }
     }
@@ -39,7 +47,7 @@ impl Ink {
     }
 }
 
-/// Where a text's place lies in it.
+/// Which part of a text lies at its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Align {
     /// At its left or top.
@@ -68,7 +76,7 @@ pub(super) struct Text {
     /// Read from bottom to top.
     pub(super) upwards: bool,
     /// Its colour.
-    pub(super) ink: Ink,
+    pub(super) ink: Tint,
 }
 
 impl Text {
@@ -86,15 +94,15 @@ impl Text {
 
 /// One thing on the canvas; later ones cover earlier ones.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Mark {
+pub(super) enum PictureMark {
     /// A filled rectangle.
-    Rect { min: Spot, max: Spot, ink: Ink },
+    Rect { min: Spot, max: Spot, ink: Tint },
     /// A filled polygon that does not cross itself.
-    Area { points: Vec<Spot>, ink: Ink },
+    Area { points: Vec<Spot>, ink: Tint },
     /// A line with round joints.
-    Line { points: Vec<Spot>, width: i32, ink: Ink },
+    Line { points: Vec<Spot>, width: i32, ink: Tint },
     /// A filled circle.
-    Disc { centre: Spot, radius: i32, ink: Ink },
+    Disc { centre: Spot, radius: i32, ink: Tint },
     /// Words.
     Text(Text),
     /// An image of RGB pixels, enlarged without smoothing.
@@ -103,23 +111,23 @@ pub(super) enum Mark {
 
 /// All marks of a picture.
 #[derive(Debug)]
-pub(super) struct Canvas {
+pub(super) struct PictureCanvas {
     /// Pixels in a row.
     pub(super) width_px: u32,
     /// Rows of pixels.
     pub(super) height_px: u32,
     /// From the lowest to the topmost.
-    pub(super) marks: Vec<Mark>,
+    pub(super) marks: Vec<PictureMark>,
 }
 
-impl Canvas {
+impl PictureCanvas {
     /// An empty canvas.
     pub(super) fn new(width_px: u32, height_px: u32) -> Self {
         Self { width_px, height_px, marks: Vec::new() }
     }
 
     /// A line; an upright or level one becomes a rectangle on whole pixels, so that it is crisp.
-    pub(super) fn line(&mut self, points: Vec<Spot>, width: i32, ink: Ink) {
+    pub(super) fn line(&mut self, points: Vec<Spot>, width: i32, ink: Tint) {
         if let [from, to] = points[..]
             && (from.0 == to.0) != (from.1 == to.1)
         {
@@ -132,9 +140,9 @@ impl Canvas {
                 let top = snapped(from.1);
                 ((from.0.min(to.0), top), (from.0.max(to.0), top + width))
             };
-            self.marks.push(Mark::Rect { min, max, ink });
+            self.marks.push(PictureMark::Rect { min, max, ink });
         } else if points.len() > 1 {
-            self.marks.push(Mark::Line { points, width, ink });
+            self.marks.push(PictureMark::Line { points, width, ink });
         }
     }
 }

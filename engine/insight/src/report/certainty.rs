@@ -1,11 +1,11 @@
-//! A certainty grid, the map of what the robot's sensors found, with its way over it.
+//! A certainty grid, the map of what the robot's sensors found, with the robot's path over it.
 
 use super::axes::BELOW_PX;
 use super::canvas::units;
 use super::picture::{Picture, failed};
 use super::route;
 use super::sheet::{BELOW_TITLE_PX, FRAME, MARGIN_PX, Sheet, spot};
-use super::trajectory::{Floor, LEFT_PX};
+use super::trajectory::{FloorPlan, LEFT_PX};
 use engine::diagnostic::Result;
 use engine::experiment::Trail;
 
@@ -30,7 +30,7 @@ pub fn certainty_grid(
     let height = cells.len() / width;
     let [x_m, y_m] = origin;
     let end = [x_m + width as f64 * cell_m, y_m + height as f64 * cell_m];
-    let floor = Floor::showing((x_m, end[0]), (y_m, end[1]));
+    let floor = FloorPlan::showing((x_m, end[0]), (y_m, end[1]));
     let room_px = WIDTH_PX - 2.0 * MARGIN_PX - LEFT_PX;
     let (width_px, height_px) = floor.fit(room_px, 720.0);
     let mut sheet = Sheet::new(WIDTH_PX, BELOW_TITLE_PX + height_px + BELOW_PX + MARGIN_PX / 2.0, title);
@@ -41,6 +41,6 @@ pub fn certainty_grid(
     let (min, max) = (plot.at(x_m, end[1]), plot.at(end[0], y_m));
     sheet.image(min, max, width, height, rgb);
     sheet.border(min, max, FRAME);
-    route::draw(&mut sheet, &plot, path);
+    route::draw_path(&mut sheet, &plot, path);
     sheet.finish()
 }

@@ -4,7 +4,7 @@ use super::axes::{Axis, BELOW_PX, Plot, axes, range};
 use super::canvas::{Align, Spot, Text};
 use super::picture::Picture;
 use super::sheet::{
-    BELOW_TITLE_PX, BLUE, Entry, MARGIN_PX, PAPER, SKY, SMALL_PX, Sheet, VERMILION, legend, spot, words,
+    BELOW_TITLE_PX, BLUE, LegendEntry, MARGIN_PX, PAPER, SKY, SMALL_PX, Sheet, VERMILION, legend, spot, words,
 };
 use crate::words::spaced;
 use engine::diagnostic::Result;
@@ -30,7 +30,7 @@ pub struct CurveData<'a> {
     pub learned_at: Option<u64>,
 }
 
-/// Draws one run as a line; of many runs the median, the quartiles and each run faintly. 1200 x 700 pixels.
+/// Draws one run as a line, many as their median and quartiles with each run faintly behind. 1200 x 700 pixels.
 ///
 /// # Errors
 /// If the picture cannot be drawn or encoded.
@@ -72,13 +72,13 @@ fn frame(sheet: &mut Sheet, data: &CurveData<'_>) -> Plot {
     axes(sheet, min, spot(END_PX, HEIGHT_PX - MARGIN_PX / 2.0 - BELOW_PX), &x, &y)
 }
 
-/// Draws values as a line that is broken where one is not finite; a value alone is a dot.
+/// Draws values as a line that is broken where one is not finite; a lone value is a dot.
 fn stroke(
     sheet: &mut Sheet,
     values: impl Iterator<Item = f64>,
     place: impl Fn(usize, f64) -> Spot,
     width_px: f64,
-    ink: super::canvas::Ink,
+    ink: super::canvas::Tint,
 ) {
     let mut line = Vec::new();
     let mut end = |line: &mut Vec<Spot>| match std::mem::take(line)[..] {
@@ -113,9 +113,12 @@ fn explain(sheet: &mut Sheet, runs: usize) {
         sheet,
         spot(END_PX, BELOW_TITLE_PX + 4.0),
         &[
-            Entry { sign: &|sheet: &mut Sheet, from, to| sheet.line(level(from, to), 3.0, BLUE), words: &median },
-            Entry { sign: &|sheet: &mut Sheet, from, to| sheet.rect(from, to, BLUE.thin(0.22)), words: "quartiles" },
-            Entry {
+            LegendEntry { sign: &|sheet: &mut Sheet, from, to| sheet.line(level(from, to), 3.0, BLUE), words: &median },
+            LegendEntry {
+                sign: &|sheet: &mut Sheet, from, to| sheet.rect(from, to, BLUE.thin(0.22)),
+                words: "quartiles",
+            },
+            LegendEntry {
                 sign: &|sheet: &mut Sheet, from, to| sheet.line(level(from, to), 1.0, SKY.towards(PAPER, 0.6)),
                 words: "each run",
             },

@@ -1,6 +1,6 @@
 //! One image seen through the pipeline: the image, what each filter made of it, the grid and its state.
 
-use super::canvas::{Ink, Spot, units};
+use super::canvas::{Spot, Tint, units};
 use super::picture::{Picture, failed};
 use super::sheet::{
     BELOW_TITLE_PX, BLUE, FRAME, LABEL_PX, MARGIN_PX, PAPER, QUIET, SKY, SMALL_PX, Sheet, TEXT, centred, spot, words,
@@ -11,7 +11,7 @@ use engine::sensors::observation::Image;
 use filter_api::Format;
 
 const GAP_PX: f64 = 28.0;
-/// From one panel to the next, at least; the words around a panel need this much.
+/// The least distance from one panel to the next, which the words around a panel need.
 const LEAST_APART_PX: f64 = 344.0;
 /// Room for one panel, pixels; a larger image is thinned out.
 const ROOM_PX: usize = 640;
@@ -109,7 +109,7 @@ impl<'a> FramePanel<'a> {
 /// # Errors
 /// If the parts do not fit each other, or the picture cannot be encoded.
 pub fn frame(data: &FrameData<'_>) -> Result<Picture> {
-    check(data)?;
+    check_parts(data)?;
     let (width, height) = (data.width_px, data.height_px);
     let keep = width.max(height).div_ceil(ROOM_PX);
     let (columns, rows) = (width.div_ceil(keep), height.div_ceil(keep));
@@ -138,7 +138,7 @@ pub fn frame(data: &FrameData<'_>) -> Result<Picture> {
     sheet.finish()
 }
 
-fn check(data: &FrameData<'_>) -> Result<()> {
+fn check_parts(data: &FrameData<'_>) -> Result<()> {
     let (width, height) = (data.width_px, data.height_px);
     let cells = data.rows * data.columns;
     let fits = |panel: &FramePanel<'_>| panel.pixels.len() == width * height * panel.format.channels();
@@ -190,7 +190,7 @@ fn grid(sheet: &mut Sheet, min: Spot, max: Spot, data: &FrameData<'_>) {
 }
 
 /// Fills a cell and gives the colour for words on it.
-fn cell_fill(sheet: &mut Sheet, from: Spot, to: Spot, occupied: bool, filled: bool) -> Ink {
+fn cell_fill(sheet: &mut Sheet, from: Spot, to: Spot, occupied: bool, filled: bool) -> Tint {
     if occupied {
         sheet.rect(from, to, BLUE);
         PAPER
@@ -205,7 +205,7 @@ fn cell_fill(sheet: &mut Sheet, from: Spot, to: Spot, occupied: bool, filled: bo
 }
 
 /// Slanted lines within a rectangle.
-fn hatch(sheet: &mut Sheet, from: Spot, to: Spot, ink: Ink) {
+fn hatch(sheet: &mut Sheet, from: Spot, to: Spot, ink: Tint) {
     let (width, height) = (to.0 - from.0, to.1 - from.1);
     let mut start = units(10.0);
     while start < width + height {

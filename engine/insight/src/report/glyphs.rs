@@ -6,16 +6,13 @@ use skrifa::raw::TableProvider;
 use skrifa::raw::tables::kern::SubtableKind;
 use skrifa::{FontRef, GlyphId, MetadataProvider};
 
-use super::canvas::{Align, Text, UNITS_PER_PX};
+use super::canvas::{Align, FineSpot, Text, UNITS_PER_PX, fine};
 
 /// The family as SVG names it: ours, then what a viewer without it may take.
 pub(super) const FAMILY: &str = "DejaVu Sans, Verdana, sans-serif";
 
 /// Straight pieces in place of one bend of an outline; at 22 pixels an "o" is then off by 0.03 pixels.
 const PIECES: u8 = 4;
-
-/// A place in pixels.
-type Point = (f32, f32);
 
 /// The font with or without heavy letters. It is part of the program; if it cannot be read, every test of text fails.
 fn font(bold: bool) -> Option<FontRef<'static>> {
@@ -42,7 +39,7 @@ fn layout(font: &FontRef<'static>, words: &str) -> (Vec<Placed>, f32) {
     (placed, end)
 }
 
-/// What is added to the distance between two letters, mostly less than nothing, font units.
+/// What is added to the distance between two letters, mostly negative, font units.
 fn kerning(font: &FontRef<'static>, left: GlyphId, right: GlyphId) -> f32 {
     let Ok(table) = font.kern() else { return 0.0 };
     let along = table.subtables().flatten().filter(|part| part.is_horizontal());
@@ -64,7 +61,7 @@ pub(super) fn width(words: &str, em: i32, bold: bool) -> i32 {
 }
 
 /// The closed outlines of all letters, in pixels of the picture; holes run the other way round.
-pub(super) fn outlines(text: &Text) -> Vec<Vec<Point>> {
+pub(super) fn outlines(text: &Text) -> Vec<Vec<FineSpot>> {
     let Some(font) = font(text.bold) else { return Vec::new() };
     let (placed, length) = layout(&font, &text.words);
     let scale = text.em as f32 / UNITS_PER_PX as f32 / units_per_em(&font);
@@ -73,12 +70,11 @@ pub(super) fn outlines(text: &Text) -> Vec<Vec<Point>> {
         Align::Middle => length / 2.0,
         Align::End => length,
     };
-    let px = |units: i32| units as f32 / UNITS_PER_PX as f32;
-    let (x, y, down) = (px(text.at.0), px(text.at.1), px(text.baseline()));
+    let ((x, y), (_, down)) = (fine(text.at), fine((0, text.baseline())));
     let letters = font.outline_glyphs();
     let mut outlines = Vec::new();
     for (glyph, start) in placed {
-        let place = |(right, up): Point| {
+        let place = |(right, up): FineSpot| {
             let (right, below) = ((start - back + right) * scale, down - up * scale);
             if text.upwards { (x + below, y - right) } else { (x + right, y + below) }
         };
@@ -98,12 +94,12 @@ struct Pen<F> {
     /// From font units to the picture.
     place: F,
     /// Where the pen is, font units.
-    at: Point,
-    outlines: Vec<Vec<Point>>,
+    at: FineSpot,
+    outlines: Vec<Vec<FineSpot>>,
 }
 
-impl<F: Fn(Point) -> Point> Pen<F> {
-    fn corner(&mut self, at: Point) {
+impl<F: Fn(FineSpot) -> FineSpot> Pen<F> {
+    fn corner(&mut self, at: FineSpot) {
         self.at = at;
         if let Some(outline) = self.outlines.last_mut() {
             outline.push((self.place)(at));
@@ -111,7 +107,7 @@ impl<F: Fn(Point) -> Point> Pen<F> {
     }
 }
 
-impl<F: Fn(Point) -> Point> OutlinePen for Pen<F> {
+impl<F: Fn(FineSpot) -> FineSpot> OutlinePen for Pen<F> {
     fn move_to(&mut self, x: f32, y: f32) {
         self.outlines.push(Vec::new());
         self.corner((x, y));
@@ -122,7 +118,7 @@ impl<F: Fn(Point) -> Point> OutlinePen for Pen<F> {
     }
 
     fn quad_to(&mut self, cx: f32, cy: f32, x: f32, y: f32) {
-        // The cubic curve that is the same as this one.
+        // The cubic curve of the same shape.
         let pull = |end: f32, to: f32| end + (to - end) * (2.0 / 3.0);
         self.curve_to(pull(self.at.0, cx), pull(self.at.1, cy), pull(x, cx), pull(y, cy), x, y);
     }
@@ -145,16 +141,16 @@ impl<F: Fn(Point) -> Point> OutlinePen for Pen<F> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::canvas::{Ink, UNITS_PER_PX};
+    use crate::report::canvas::{Tint, UNITS_PER_PX};
 
     fn text(words: &str, along: Align, upwards: bool) -> Text {
-        let (em, ink) = (20 * UNITS_PER_PX, Ink::hex(0));
+        let (em, ink) = (20 * UNITS_PER_PX, Tint::hex(0));
         Text { words: words.to_owned(), at: (400, 400), em, bold: false, along, across: Align::Middle, upwards, ink }
     }
 
     /// Least x and y, greatest x and y of all outlines.
     fn bounds(text: &Text) -> [f32; 4] {
-        let all: Vec<Point> = outlines(text).concat();
+        let all: Vec<FineSpot> = outlines(text).concat();
         let from = [f32::MAX, f32::MAX, f32::MIN, f32::MIN];
         all.iter().fold(from, |now, at| [now[0].min(at.0), now[1].min(at.1), now[2].max(at.0), now[3].max(at.1)])
     }

@@ -1,20 +1,20 @@
 //! The world from above: what stands, what is driven on, what is painted on the floor.
 
 use super::axes::Plot;
-use super::canvas::{Ink, Spot};
+use super::canvas::{Spot, Tint};
 use super::sheet::{FRAME, Sheet};
 use engine::geometry::Point2;
 use engine::world::scene::{SceneParts, Shape, Solid};
 
 /// The floor, dull enough to show white paint.
-pub(super) const FLOOR: Ink = Ink::hex(0xf6f7f8);
+pub(super) const FLOOR: Tint = Tint::hex(0xf6f7f8);
 /// What stops the robot.
-pub(super) const WALL: Ink = Ink::hex(0x484f58);
+pub(super) const WALL: Tint = Tint::hex(0x484f58);
 /// What it drives on.
-const PLATFORM: Ink = Ink::hex(0xffffff);
-const ROUTE: Ink = Ink::hex(0x8c959f);
+const PLATFORM: Tint = Tint::hex(0xffffff);
+const ROUTE: Tint = Tint::hex(0x8c959f);
 
-/// No robot stands on something thinner, metres: a way that cuts a wall does not make it a platform.
+/// No robot stands on something thinner, metres: a path that cuts a wall does not make it a platform.
 const LEAST_PLATFORM_M: f64 = 0.3;
 
 /// Draws the solids, the lowest first; one that holds any of `visited` is driven on and drawn light.
@@ -26,7 +26,7 @@ pub(super) fn solids(sheet: &mut Sheet, plot: &Plot, parts: &SceneParts, visited
         let ramp = matches!(solid.shape, Shape::Ramp { .. });
         if !solid.collides {
             let paint =
-                parts.materials.get(solid.material).map_or(FRAME, |material| Ink { rgb: material.colour, alpha: 1.0 });
+                parts.materials.get(solid.material).map_or(FRAME, |material| Tint { rgb: material.colour, alpha: 1.0 });
             sheet.area(outline, paint);
         } else if ramp || visited.iter().any(|at| holds(solid, *at)) {
             sheet.area(outline.clone(), PLATFORM);
@@ -53,7 +53,7 @@ pub(super) fn route_sign(sheet: &mut Sheet, from: Spot, to: Spot) {
 }
 
 /// A line of dashes that run on around the corners.
-fn dashed(sheet: &mut Sheet, spots: &[Spot], width_px: f64, ink: Ink) {
+fn dashed(sheet: &mut Sheet, spots: &[Spot], width_px: f64, ink: Tint) {
     const DASH: f64 = 32.0;
     const GAP: f64 = 24.0;
     let mut done = 0.0;

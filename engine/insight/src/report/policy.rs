@@ -1,12 +1,12 @@
 //! The learned table on one page: each state as a small grid, with the motion that the robot prefers there.
 
-use super::canvas::{Ink, Spot, units};
+use super::canvas::{Spot, Tint, units};
 use super::glyphs;
 use super::picture::Picture;
 use super::route::arrow_head;
 use super::sheet::{
-    BELOW_TITLE_PX, BLUE, Entry, FRAME, GRID, MARGIN_PX, PAPER, QUIET, SMALL_PX, Sheet, TEXT, VERMILION, legend, spot,
-    words,
+    BELOW_TITLE_PX, BLUE, FRAME, GRID, LegendEntry, MARGIN_PX, PAPER, QUIET, SMALL_PX, Sheet, TEXT, VERMILION, legend,
+    spot, words,
 };
 use crate::words::three_figures;
 use engine::diagnostic::Result;
@@ -68,7 +68,7 @@ pub fn policy(data: &PolicyData<'_>) -> Result<Picture> {
         let x_px = MARGIN_PX + (index % ACROSS) as f64 * STEP_X_PX;
         let y_px = top_px + (index / ACROSS) as f64 * STEP_Y_PX;
         icon(&mut sheet, spot(x_px, y_px), (data.rows, data.columns), state, strength(state.visits, most));
-        // A way backwards begins at the top, so that it does not run into the words.
+        // A path backwards begins at the top, so that it does not run into the words.
         let foot_px = if state.best.linear_m_per_s < 0.0 { 8.0 } else { ICON_PX - 8.0 };
         motion(&mut sheet, spot(x_px + ICON_PX + 36.0, y_px + foot_px), state, fastest);
     }
@@ -108,7 +108,7 @@ pub(super) fn icon(sheet: &mut Sheet, min: Spot, (rows, columns): (usize, usize)
     sheet.text(number);
 }
 
-/// The way that the robot would take in some time, from `foot` upwards: length tells speed, bend the turn.
+/// The path that the robot would take in some time, upwards from `foot`: the length shows the speed, the bend the turn.
 pub(super) fn motion(sheet: &mut Sheet, foot: Spot, state: &PolicyState, fastest: f64) {
     let ink = match state {
         PolicyState { visits: 0, .. } => return,
@@ -134,7 +134,7 @@ pub(super) fn motion(sheet: &mut Sheet, foot: Spot, state: &PolicyState, fastest
 }
 
 /// A turn on the spot: an arc around it.
-fn spin(sheet: &mut Sheet, foot: Spot, bend: f64, ink: Ink) {
+fn spin(sheet: &mut Sheet, foot: Spot, bend: f64, ink: Tint) {
     let centre = (foot.0, foot.1 - units(20.0));
     if bend == 0.0 {
         return sheet.disc(centre, 4.0, ink);
@@ -146,7 +146,7 @@ fn spin(sheet: &mut Sheet, foot: Spot, bend: f64, ink: Ink) {
     finish_arrow(sheet, centre, way.collect(), ink);
 }
 
-fn finish_arrow(sheet: &mut Sheet, foot: Spot, way: Vec<Spot>, ink: Ink) {
+fn finish_arrow(sheet: &mut Sheet, foot: Spot, way: Vec<Spot>, ink: Tint) {
     if let [.., before, _, tip] = way[..] {
         sheet.line(way, 2.0, ink);
         sheet.disc(foot, 3.0, ink);
@@ -168,8 +168,8 @@ fn explain(sheet: &mut Sheet) {
         finish_arrow(sheet, (from.0, y), way, TEXT);
     };
     let entries = [
-        Entry { sign: &arrow, words: "best action: length is speed, bend is turn, orange is backwards" },
-        Entry { sign: &shades, words: "filled cells, stronger with more visits" },
+        LegendEntry { sign: &arrow, words: "best action: length is speed, bend is turn, orange is backwards" },
+        LegendEntry { sign: &shades, words: "filled cells, stronger with more visits" },
     ];
     legend(sheet, end, &entries);
     sheet.text(words("below each: state and value", spot(MARGIN_PX, BELOW_TITLE_PX + 6.0), SMALL_PX, QUIET));

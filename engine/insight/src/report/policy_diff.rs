@@ -34,7 +34,7 @@ pub struct PolicyDiffData<'a> {
 pub struct StateChange {
     /// The state with its old best action.
     pub before: PolicyState,
-    /// The best action with the new one.
+    /// That state with its new best action.
     pub after: PolicyState,
     /// How often the record tried the old and the new best action in this state.
     pub tried: [u64; 2],

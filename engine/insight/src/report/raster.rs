@@ -3,7 +3,7 @@
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 
-use super::canvas::{Canvas, Ink, Mark, Spot, UNITS_PER_PX};
+use super::canvas::{FineSpot, PictureCanvas, PictureMark, Tint, UNITS_PER_PX, fine};
 use super::glyphs;
 use super::picture::failed;
 use engine::diagnostic::Result;
@@ -12,7 +12,7 @@ use engine::diagnostic::Result;
 ///
 /// # Errors
 /// If it cannot be encoded.
-pub(super) fn png(canvas: &Canvas) -> Result<Vec<u8>> {
+pub(super) fn png(canvas: &PictureCanvas) -> Result<Vec<u8>> {
     let mut raster = Raster::new(canvas.width_px as usize, canvas.height_px as usize);
     for mark in &canvas.marks {
         raster.paint(mark);
@@ -43,12 +43,6 @@ struct Raster {
     touched: Vec<(usize, usize)>,
 }
 
-type Point = (f32, f32);
-
-fn point(spot: Spot) -> Point {
-    (spot.0 as f32 / UNITS_PER_PX as f32, spot.1 as f32 / UNITS_PER_PX as f32)
-}
-
 impl Raster {
     fn new(width: usize, height: usize) -> Self {
         Self {
@@ -60,37 +54,37 @@ impl Raster {
         }
     }
 
-    fn paint(&mut self, mark: &Mark) {
+    fn paint(&mut self, mark: &PictureMark) {
         match mark {
-            Mark::Rect { min, max, ink } => {
-                self.rect(point(*min), point(*max));
+            PictureMark::Rect { min, max, ink } => {
+                self.rect(fine(*min), fine(*max));
                 self.blend(*ink);
             }
-            Mark::Area { points, ink } => {
-                self.outline(points.iter().copied().map(point));
+            PictureMark::Area { points, ink } => {
+                self.outline(points.iter().copied().map(fine));
                 self.sum_edges();
                 self.blend(*ink);
             }
-            Mark::Line { points, width, ink } => {
+            PictureMark::Line { points, width, ink } => {
                 let radius = *width as f32 / UNITS_PER_PX as f32 / 2.0;
                 for pair in points.windows(2) {
-                    self.segment(point(pair[0]), point(pair[1]), radius);
+                    self.segment(fine(pair[0]), fine(pair[1]), radius);
                 }
                 self.blend(*ink);
             }
-            Mark::Disc { centre, radius, ink } => {
-                self.segment(point(*centre), point(*centre), *radius as f32 / UNITS_PER_PX as f32);
+            PictureMark::Disc { centre, radius, ink } => {
+                self.segment(fine(*centre), fine(*centre), *radius as f32 / UNITS_PER_PX as f32);
                 self.blend(*ink);
             }
-            Mark::Text(text) => {
+            PictureMark::Text(text) => {
                 for outline in glyphs::outlines(text) {
                     self.outline(outline.into_iter());
                 }
                 self.sum_edges();
                 self.blend(text.ink);
             }
-            Mark::Pixels { min, max, columns, rows, rgb } => {
-                self.pixels(point(*min), point(*max), (*columns, *rows), rgb)
+            PictureMark::Pixels { min, max, columns, rows, rgb } => {
+                self.pixels(fine(*min), fine(*max), (*columns, *rows), rgb)
             }
         }
     }
@@ -105,7 +99,7 @@ impl Raster {
         (low.floor().clamp(0.0, limit as f32) as usize, high.ceil().clamp(0.0, limit as f32) as usize)
     }
 
-    fn rect(&mut self, min: Point, max: Point) {
+    fn rect(&mut self, min: FineSpot, max: FineSpot) {
         let share = |cell: usize, low: f32, high: f32| (high.min(cell as f32 + 1.0) - low.max(cell as f32)).max(0.0);
         let (left, right) = Self::span(min.0, max.0, self.width);
         let (top, bottom) = Self::span(min.1, max.1, self.height);
@@ -123,7 +117,7 @@ impl Raster {
     }
 
     /// Adds the edges of a closed outline.
-    fn outline(&mut self, corners: impl DoubleEndedIterator<Item = Point> + Clone) {
+    fn outline(&mut self, corners: impl DoubleEndedIterator<Item = FineSpot> + Clone) {
         let last = corners.clone().next_back();
         for (from, to) in last.into_iter().chain(corners.clone()).zip(corners) {
             self.edge(from, to);
@@ -131,7 +125,7 @@ impl Raster {
     }
 
     /// Adds the signed change of covered area along one edge of a polygon, row by row.
-    fn edge(&mut self, from: Point, to: Point) {
+    fn edge(&mut self, from: FineSpot, to: FineSpot) {
         if from.1 == to.1 {
             return;
         }
@@ -183,7 +177,7 @@ impl Raster {
     }
 
     /// Covers all within `radius` of a segment, with a border one pixel soft.
-    fn segment(&mut self, from: Point, to: Point, radius: f32) {
+    fn segment(&mut self, from: FineSpot, to: FineSpot, radius: f32) {
         let reach = radius + 0.5;
         let along = (to.0 - from.0, to.1 - from.1);
         let length = along.0 * along.0 + along.1 * along.1;
@@ -214,7 +208,7 @@ impl Raster {
         }
     }
 
-    fn pixels(&mut self, min: Point, max: Point, (columns, rows): (usize, usize), rgb: &[u8]) {
+    fn pixels(&mut self, min: FineSpot, max: FineSpot, (columns, rows): (usize, usize), rgb: &[u8]) {
         let (left, right) = Self::span(min.0.round(), max.0.round(), self.width);
         let (top, bottom) = Self::span(min.1.round(), max.1.round(), self.height);
         let place = |at: usize, low: f32, high: f32, count: usize| {
@@ -231,7 +225,7 @@ impl Raster {
     }
 
     /// Lays the ink over the covered pixels and clears the coverage.
-    fn blend(&mut self, ink: Ink) {
+    fn blend(&mut self, ink: Tint) {
         for (row, touched) in self.touched.iter_mut().enumerate() {
             let (from, to) = std::mem::replace(touched, (usize::MAX, 0));
             for at in row * self.width + from.min(to)..row * self.width + to {

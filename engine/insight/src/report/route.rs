@@ -1,28 +1,28 @@
-//! A driven path: its colour tells the time, arrow heads the direction, crosses the failures.
+//! A driven path: its colour shows the time, arrow heads the direction, crosses the failures.
 
 use super::axes::Plot;
-use super::canvas::{Ink, Spot, UNITS_PER_PX};
+use super::canvas::{Spot, Tint, UNITS_PER_PX};
 use super::sheet::{PAPER, Sheet, VERMILION};
 use engine::experiment::Trail;
 
-const FIRST: Ink = Ink::hex(0x6cbcf0);
-const LAST: Ink = Ink::hex(0x00324f);
+const FIRST: Tint = Tint::hex(0x6cbcf0);
+const LAST: Tint = Tint::hex(0x00324f);
 /// Colours from the first to the last moment.
 const SHADES: usize = 24;
 
 /// The colour of a moment, 0 to 1.
-pub(super) fn shade(share: f64) -> Ink {
+pub(super) fn shade(share: f64) -> Tint {
     FIRST.towards(LAST, share.clamp(0.0, 1.0))
 }
 
-/// Every point of a path that is a number.
+/// Every point of a path whose coordinates are finite.
 pub(super) fn points(path: &Trail) -> impl Iterator<Item = [f64; 2]> {
     let all = path.legs.iter().flatten().chain(&path.failures);
     all.filter(|at| at[0].is_finite() && at[1].is_finite()).map(|at| [f64::from(at[0]), f64::from(at[1])])
 }
 
 /// Draws the legs, where each starts, and the failures.
-pub(super) fn draw(sheet: &mut Sheet, plot: &Plot, path: &Trail) {
+pub(super) fn draw_path(sheet: &mut Sheet, plot: &Plot, path: &Trail) {
     let total = path.legs.iter().map(Vec::len).sum::<usize>().max(1);
     let mut before = 0;
     for leg in &path.legs {
@@ -80,7 +80,7 @@ fn stroke(sheet: &mut Sheet, line: Vec<Spot>, colour: usize) {
     sheet.line(line, 1.75, shade((colour as f64 + 0.5) / SHADES as f64));
 }
 
-/// An arrow head each 160 pixels of the way, at most ten in a leg.
+/// An arrow head every 160 pixels of the path, at most ten in a leg.
 fn leg_arrows(sheet: &mut Sheet, plot: &Plot, leg: &[[f32; 2]], before: usize, total: usize) {
     let apart = f64::from(160 * UNITS_PER_PX);
     let mut way = apart / 2.0;
@@ -104,7 +104,7 @@ fn length(from: Spot, to: Spot) -> f64 {
 }
 
 /// A filled arrow head with its tip at `to`.
-pub(super) fn arrow_head(sheet: &mut Sheet, from: Spot, to: Spot, long_px: f64, ink: Ink) {
+pub(super) fn arrow_head(sheet: &mut Sheet, from: Spot, to: Spot, long_px: f64, ink: Tint) {
     let way = length(from, to).max(1.0);
     let long = long_px * f64::from(UNITS_PER_PX);
     let (x, y) = (f64::from(to.0 - from.0) / way * long, f64::from(to.1 - from.1) / way * long);

@@ -1,19 +1,19 @@
 //! The paper that every picture is drawn on: colours, sizes of text, and a few strokes.
 
-use super::canvas::{Align, Canvas, Ink, Mark, Spot, Text, units};
+use super::canvas::{Align, PictureCanvas, PictureMark, Spot, Text, Tint, units};
 use super::picture::Picture;
 use super::{glyphs, raster, vector};
 use engine::diagnostic::Result;
 
-pub(super) const PAPER: Ink = Ink::hex(0xffffff);
-pub(super) const TEXT: Ink = Ink::hex(0x1f2328);
-pub(super) const QUIET: Ink = Ink::hex(0x57606a);
-pub(super) const GRID: Ink = Ink::hex(0xe7e9ec);
-pub(super) const FRAME: Ink = Ink::hex(0x8c959f);
+pub(super) const PAPER: Tint = Tint::hex(0xffffff);
+pub(super) const TEXT: Tint = Tint::hex(0x1f2328);
+pub(super) const QUIET: Tint = Tint::hex(0x57606a);
+pub(super) const GRID: Tint = Tint::hex(0xe7e9ec);
+pub(super) const FRAME: Tint = Tint::hex(0x8c959f);
 // From the palette of Okabe and Ito, which people with any colour vision can tell apart.
-pub(super) const BLUE: Ink = Ink::hex(0x0072b2);
-pub(super) const SKY: Ink = Ink::hex(0x56b4e9);
-pub(super) const VERMILION: Ink = Ink::hex(0xd55e00);
+pub(super) const BLUE: Tint = Tint::hex(0x0072b2);
+pub(super) const SKY: Tint = Tint::hex(0x56b4e9);
+pub(super) const VERMILION: Tint = Tint::hex(0xd55e00);
 
 /// Em of a picture's title, pixels.
 pub(super) const TITLE_PX: f64 = 22.0;
@@ -33,7 +33,7 @@ pub(super) fn spot(x_px: f64, y_px: f64) -> Spot {
 
 /// A picture in the making.
 pub(super) struct Sheet {
-    canvas: Canvas,
+    canvas: PictureCanvas,
     title: String,
     pub(super) height_px: f64,
 }
@@ -41,7 +41,7 @@ pub(super) struct Sheet {
 impl Sheet {
     /// White paper with a title.
     pub(super) fn new(width_px: f64, height_px: f64, title: &str) -> Self {
-        let canvas = Canvas::new(width_px.ceil() as u32, height_px.ceil() as u32);
+        let canvas = PictureCanvas::new(width_px.ceil() as u32, height_px.ceil() as u32);
         let mut sheet = Self { canvas, title: title.to_owned(), height_px };
         sheet.rect(spot(0.0, 0.0), spot(width_px.ceil(), height_px.ceil()), PAPER);
         let mut text = words(title, spot(MARGIN_PX, MARGIN_PX), TITLE_PX, TEXT);
@@ -55,38 +55,38 @@ impl Sheet {
         Ok(Picture { svg: vector::svg(&self.canvas, &self.title)?, png: raster::png(&self.canvas)? })
     }
 
-    fn push(&mut self, mark: Mark) {
+    fn push(&mut self, mark: PictureMark) {
         self.canvas.marks.push(mark);
     }
 
-    pub(super) fn rect(&mut self, min: Spot, max: Spot, ink: Ink) {
-        self.push(Mark::Rect { min, max, ink });
+    pub(super) fn rect(&mut self, min: Spot, max: Spot, ink: Tint) {
+        self.push(PictureMark::Rect { min, max, ink });
     }
 
     /// The border of a rectangle, one pixel wide, on whole pixels.
-    pub(super) fn border(&mut self, min: Spot, max: Spot, ink: Ink) {
+    pub(super) fn border(&mut self, min: Spot, max: Spot, ink: Tint) {
         let corners = [min, (max.0, min.1), max, (min.0, max.1), min];
         for side in corners.windows(2) {
             self.line(side.to_vec(), 1.0, ink);
         }
     }
 
-    pub(super) fn area(&mut self, points: Vec<Spot>, ink: Ink) {
+    pub(super) fn area(&mut self, points: Vec<Spot>, ink: Tint) {
         if points.len() > 2 {
-            self.push(Mark::Area { points, ink });
+            self.push(PictureMark::Area { points, ink });
         }
     }
 
-    pub(super) fn line(&mut self, points: Vec<Spot>, width_px: f64, ink: Ink) {
+    pub(super) fn line(&mut self, points: Vec<Spot>, width_px: f64, ink: Tint) {
         self.canvas.line(points, units(width_px), ink);
     }
 
-    pub(super) fn disc(&mut self, centre: Spot, radius_px: f64, ink: Ink) {
-        self.push(Mark::Disc { centre, radius: units(radius_px), ink });
+    pub(super) fn disc(&mut self, centre: Spot, radius_px: f64, ink: Tint) {
+        self.push(PictureMark::Disc { centre, radius: units(radius_px), ink });
     }
 
     /// A diagonal cross.
-    pub(super) fn cross(&mut self, centre: Spot, reach_px: f64, ink: Ink) {
+    pub(super) fn cross(&mut self, centre: Spot, reach_px: f64, ink: Tint) {
         let reach = units(reach_px);
         for side in [-1, 1] {
             let ends = [(centre.0 - reach, centre.1 - reach * side), (centre.0 + reach, centre.1 + reach * side)];
@@ -95,16 +95,16 @@ impl Sheet {
     }
 
     pub(super) fn text(&mut self, text: Text) {
-        self.push(Mark::Text(text));
+        self.push(PictureMark::Text(text));
     }
 
     pub(super) fn image(&mut self, min: Spot, max: Spot, columns: usize, rows: usize, rgb: Vec<u8>) {
-        self.push(Mark::Pixels { min, max, columns, rows, rgb });
+        self.push(PictureMark::Pixels { min, max, columns, rows, rgb });
     }
 }
 
 /// A line of text that starts at `at` and stands in the middle of its height.
-pub(super) fn words(words: &str, at: Spot, em_px: f64, ink: Ink) -> Text {
+pub(super) fn words(words: &str, at: Spot, em_px: f64, ink: Tint) -> Text {
     Text {
         words: words.to_owned(),
         at,
@@ -117,7 +117,7 @@ pub(super) fn words(words: &str, at: Spot, em_px: f64, ink: Ink) -> Text {
     }
 }
 
-/// A text around its place.
+/// The text with its middle at its place.
 pub(super) fn centred(text: Text) -> Text {
     Text { along: Align::Middle, ..text }
 }
@@ -139,13 +139,13 @@ pub(super) fn fitted(mut text: Text, width: i32) -> Text {
 }
 
 /// One entry of a legend: how its sign is drawn, and what it means.
-pub(super) struct Entry<'a> {
+pub(super) struct LegendEntry<'a> {
     pub(super) sign: &'a dyn Fn(&mut Sheet, Spot, Spot),
     pub(super) words: &'a str,
 }
 
 /// Draws entries in a row that ends at the right of `end`; a sign gets the box from its first to its second corner.
-pub(super) fn legend(sheet: &mut Sheet, end: Spot, entries: &[Entry<'_>]) {
+pub(super) fn legend(sheet: &mut Sheet, end: Spot, entries: &[LegendEntry<'_>]) {
     let (sign, gap, after) = (units(28.0), units(8.0), units(26.0));
     let mut right = end.0;
     for entry in entries.iter().rev() {

@@ -270,7 +270,7 @@ fn the_first_row_of_a_certainty_grid_is_at_the_bottom() {
 }
 
 #[test]
-fn a_picture_is_written_in_both_forms_or_the_failure_is_told() {
+fn a_picture_is_written_in_both_forms_or_the_failure_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let picture = Picture { svg: "<svg/>".to_owned(), png: vec![1, 2, 3] };
     picture.write(folder.path(), "curve").unwrap();

@@ -4,7 +4,7 @@ use super::axes::{Axis, BELOW_PX, Plot, axes, range};
 use super::canvas::{Spot, units};
 use super::picture::Picture;
 use super::sheet::{
-    BELOW_TITLE_PX, Entry, LABEL_PX, MARGIN_PX, Sheet, TEXT, VERMILION, centred, fitted, legend, spot, words,
+    BELOW_TITLE_PX, LABEL_PX, LegendEntry, MARGIN_PX, Sheet, TEXT, VERMILION, centred, fitted, legend, spot, words,
 };
 use super::{plan, route};
 use engine::diagnostic::Result;
@@ -29,19 +29,19 @@ pub struct TrajectoryData<'a> {
     pub panels: &'a [(&'a str, &'a Trail)],
 }
 
-/// Draws both panels in one scale. 1400 pixels wide, as high as the world asks.
+/// Draws both panels in one scale. 1400 pixels wide, as high as the world needs.
 ///
 /// # Errors
 /// If the picture cannot be drawn or encoded.
 pub fn trajectories(data: &TrajectoryData<'_>) -> Result<Picture> {
     let visited: Vec<[f64; 2]> = data.panels.iter().flat_map(|(_, path)| route::points(path)).collect();
     let lap = data.route.unwrap_or_default();
-    let floor = Floor::around(data.parts, visited.iter().copied().chain(lap.iter().map(|at| [at.x, at.y])));
+    let floor = FloorPlan::around(data.parts, visited.iter().copied().chain(lap.iter().map(|at| [at.x, at.y])));
     let room_px = (WIDTH_PX - 2.0 * MARGIN_PX - 24.0) / 2.0 - LEFT_PX;
     let (width_px, height_px) = floor.fit(room_px, 760.0);
     let top_px = BELOW_TITLE_PX + 30.0;
     let mut sheet = Sheet::new(WIDTH_PX, top_px + height_px + BELOW_PX + 44.0, data.title);
-    // Failures are where walls are touched; only the way itself shows what can be driven on.
+    // Walls are touched where failures are; only the path itself shows what can be driven on.
     let driven: Vec<[f64; 2]> = data.panels.iter().flat_map(|(_, path)| driven(path)).collect();
     for (index, (name, path)) in data.panels.iter().enumerate() {
         let left_px = MARGIN_PX + LEFT_PX + index as f64 * (room_px + LEFT_PX + 24.0) + (room_px - width_px) / 2.0;
@@ -52,7 +52,7 @@ pub fn trajectories(data: &TrajectoryData<'_>) -> Result<Picture> {
         let plot = floor.plot(&mut sheet, min, max);
         plan::solids(&mut sheet, &plot, data.parts, &driven);
         plan::route(&mut sheet, &plot, lap);
-        route::draw(&mut sheet, &plot, path);
+        route::draw_path(&mut sheet, &plot, path);
     }
     explain(&mut sheet, data.route.is_some());
     sheet.finish()
@@ -64,12 +64,12 @@ fn driven(path: &Trail) -> impl Iterator<Item = [f64; 2]> {
 
 /// The part of the floor plan that is shown, metres.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Floor {
+pub(super) struct FloorPlan {
     x: (f64, f64),
     y: (f64, f64),
 }
 
-impl Floor {
+impl FloorPlan {
     /// All solids and places, with a small border.
     pub(super) fn around(parts: &SceneParts, places: impl Iterator<Item = [f64; 2]>) -> Self {
         let corners = parts.solids.iter().flat_map(|solid| {
@@ -135,10 +135,10 @@ fn explain(sheet: &mut Sheet, lap: bool) {
     let failure = |sheet: &mut Sheet, from: Spot, to: Spot| sheet.cross(middle(from, to), 5.0, VERMILION);
     let intended = |sheet: &mut Sheet, from: Spot, to: Spot| plan::route_sign(sheet, from, to);
     let all = [
-        Entry { sign: &start, words: "start" },
-        Entry { sign: &time, words: "way, light early to dark late" },
-        Entry { sign: &failure, words: "failure" },
-        Entry { sign: &intended, words: "intended lap" },
+        LegendEntry { sign: &start, words: "start" },
+        LegendEntry { sign: &time, words: "way, light early to dark late" },
+        LegendEntry { sign: &failure, words: "failure" },
+        LegendEntry { sign: &intended, words: "intended lap" },
     ];
     legend(sheet, end, if lap { &all } else { &all[..3] });
 }

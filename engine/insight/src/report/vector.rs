@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Write};
 
-use super::canvas::{Align, Canvas, Ink, Mark, Spot, Text, UNITS_PER_PX};
+use super::canvas::{Align, PictureCanvas, PictureMark, Spot, Text, Tint, UNITS_PER_PX};
 use super::{glyphs, raster};
 use crate::markup::{Escaped, base64};
 use engine::diagnostic::Result;
@@ -11,7 +11,7 @@ use engine::diagnostic::Result;
 ///
 /// # Errors
 /// If an image in it cannot be encoded.
-pub(super) fn svg(canvas: &Canvas, title: &str) -> Result<String> {
+pub(super) fn svg(canvas: &PictureCanvas, title: &str) -> Result<String> {
     let (width, height) = (canvas.width_px, canvas.height_px);
     let mut out = String::new();
     let _ = writeln!(
@@ -28,27 +28,27 @@ pub(super) fn svg(canvas: &Canvas, title: &str) -> Result<String> {
     Ok(out)
 }
 
-fn write_mark(out: &mut String, mark: &Mark) -> Result<()> {
+fn write_mark(out: &mut String, mark: &PictureMark) -> Result<()> {
     // Writing into a String cannot fail.
     let _ = match mark {
-        Mark::Rect { min, max, ink } => {
-            writeln!(out, "<rect {} {}/>", Frame(*min, *max), Paint("fill", *ink))
+        PictureMark::Rect { min, max, ink } => {
+            writeln!(out, "<rect {} {}/>", SvgFrame(*min, *max), Paint("fill", *ink))
         }
-        Mark::Area { points, ink } => {
+        PictureMark::Area { points, ink } => {
             writeln!(out, "<polygon points=\"{}\" {}/>", Points(points), Paint("fill", *ink))
         }
-        Mark::Line { points, width, ink } => {
+        PictureMark::Line { points, width, ink } => {
             let (width, paint) = (Px(*width), Paint("stroke", *ink));
             writeln!(out, "<polyline points=\"{}\" fill=\"none\" {paint} stroke-width=\"{width}\"/>", Points(points))
         }
-        Mark::Disc { centre, radius, ink } => {
+        PictureMark::Disc { centre, radius, ink } => {
             let (x, y, r) = (Px(centre.0), Px(centre.1), Px(*radius));
             writeln!(out, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" {}/>", Paint("fill", *ink))
         }
-        Mark::Text(text) => write_text(out, text),
-        Mark::Pixels { min, max, columns, rows, rgb } => {
+        PictureMark::Text(text) => write_text(out, text),
+        PictureMark::Pixels { min, max, columns, rows, rgb } => {
             let image = base64(&raster::encode(rgb, *columns as u32, *rows as u32)?);
-            let frame = Frame(*min, *max);
+            let frame = SvgFrame(*min, *max);
             writeln!(
                 out,
                 "<image {frame} preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" \
@@ -97,20 +97,20 @@ impl fmt::Display for Points<'_> {
     }
 }
 
-struct Frame(Spot, Spot);
+struct SvgFrame(Spot, Spot);
 
-impl fmt::Display for Frame {
+impl fmt::Display for SvgFrame {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (width, height) = (Px((self.1.0 - self.0.0).max(0)), Px((self.1.1 - self.0.1).max(0)));
         write!(f, "x=\"{}\" y=\"{}\" width=\"{width}\" height=\"{height}\"", Px(self.0.0), Px(self.0.1))
     }
 }
 
-struct Paint(&'static str, Ink);
+struct Paint(&'static str, Tint);
 
 impl fmt::Display for Paint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self(what, Ink { rgb: [red, green, blue], alpha }) = self;
+        let Self(what, Tint { rgb: [red, green, blue], alpha }) = self;
         write!(f, "{what}=\"#{red:02x}{green:02x}{blue:02x}\"")?;
         if *alpha < 1.0 { write!(f, " {what}-opacity=\"{alpha}\"") } else { Ok(()) }
     }
@@ -122,7 +122,7 @@ mod tests {
 
     #[test]
     fn a_title_cannot_break_the_document() {
-        let document = svg(&Canvas::new(10, 10), "a </title>").unwrap();
+        let document = svg(&PictureCanvas::new(10, 10), "a </title>").unwrap();
         assert!(document.contains("<title>a &lt;/title&gt;</title>"), "{document}");
     }
 }

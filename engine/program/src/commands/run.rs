@@ -7,7 +7,7 @@ use std::time::Instant;
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Overrides, Phase, Plan, Progress, RunLog, Spread, WINDOW_STEPS, in_parallel, run_seed};
 use insight::folder::{RunFolder, SeedResult};
-use insight::record::{self, record};
+use insight::record::{check_recording, record};
 use pack::Runnable;
 
 use super::check;
@@ -86,7 +86,7 @@ fn check_record(path: &Path, seeds: &[u64]) -> Result<()> {
         let error = Diagnostic::new("E-RECORD-SEEDS", "a recording is of one seed");
         return error.help("leave --seeds out, and choose the seed with --seed").fail();
     }
-    record::check_recording(path)
+    check_recording(path)
 }
 
 fn out(arguments: &RunArguments, name: &str, seeds: &[u64]) -> PathBuf {

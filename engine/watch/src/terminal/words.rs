@@ -5,12 +5,12 @@ use ratatui_core::text::Span;
 use engine::diagnostic::printable;
 use insight::words::{typeset, whole};
 
-/// A number with its sign.
+/// A number with its sign, also if it is positive.
 pub(super) fn signed(number: f64) -> String {
     if number > 0.0 { format!("+{}", typeset(number)) } else { typeset(number) }
 }
 
-/// How much the sum of many rewards is: whole numbers with commas once they are large.
+/// The sum of many rewards with its sign: whole and with commas once it is large.
 pub(super) fn total(number: f64) -> String {
     if number.abs() < 1000.0 {
         return signed(number);

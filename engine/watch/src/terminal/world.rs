@@ -12,7 +12,7 @@ use super::ink::TerminalInk;
 use super::lines::{heading, nothing};
 use super::view::View;
 use engine::experiment::Record;
-use insight::page::{Document, Outline};
+use insight::page::{Document, SolidOutline};
 use insight::words::typeset;
 
 /// Steps of the way that are drawn.
@@ -40,7 +40,7 @@ impl Map {
     }
 
     /// An outline's corners in dots, with its own origin at a pose.
-    fn corners(&self, outline: &Outline, (x, y, yaw): (f64, f64, f64)) -> Vec<Dot> {
+    fn corners(&self, outline: &SolidOutline, (x, y, yaw): (f64, f64, f64)) -> Vec<Dot> {
         let (sin, cos) = libm::sincos(yaw);
         let place =
             |(along, across): (f64, f64)| self.at((x + cos * along - sin * across, y + sin * along + cos * across));
@@ -91,7 +91,7 @@ fn scale_bar(map: &Map) -> String {
     format!("├{}┤ {} m", "─".repeat(cells(metres).saturating_sub(2)), typeset(metres))
 }
 
-fn stand(map: &Map, solid: &Outline, dots: &mut Dots) {
+fn stand(map: &Map, solid: &SolidOutline, dots: &mut Dots) {
     let corners = map.corners(solid, (0.0, 0.0, 0.0));
     match solid.kind {
         "wall" => {
