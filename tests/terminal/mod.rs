@@ -15,7 +15,7 @@ use engine::world::Layout;
 use insight::page::{Document, Moments};
 use ratatui_core::buffer::Buffer;
 use ratatui_core::layout::Rect;
-use watch::terminal::{TerminalInk, View, draw};
+use watch::terminal::{TerminalInk, View, draw_screen};
 use watch::{Board, SavedRun, WatchedSeed};
 
 use crate::support::{SCRIPT, WORLD};
@@ -77,7 +77,7 @@ fn seen(board: &Board) -> View {
 fn buffer(view: &View, width: u16, height: u16) -> Buffer {
     let area = Rect::new(0, 0, width, height);
     let mut buffer = Buffer::empty(area);
-    draw(view, area, &mut buffer);
+    draw_screen(view, area, &mut buffer);
     buffer
 }
 

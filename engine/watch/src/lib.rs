@@ -22,6 +22,7 @@ mod guard;
 mod relearn;
 mod server;
 mod session;
+mod shared;
 mod socket;
 #[cfg(feature = "tui")]
 pub mod terminal;

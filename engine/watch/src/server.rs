@@ -16,16 +16,17 @@ use hyper_util::service::TowerToHyperService;
 use serde::Deserialize;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpListener, TcpStream};
-use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+use tokio::sync::Semaphore;
 
 use super::board::{Board, SavedRun};
 use super::guard::{Guard, Refusal, read_head};
 use super::relearn::Asker;
+use super::shared::{Permit, ServerState};
 use super::socket;
 use engine::diagnostic::{Diagnostic, Result};
 use engine::digest::hex;
 use engine::experiment::Phase;
-use insight::page::{Document, Page, Shot, page, shot_of};
+use insight::page::{Document, Shot, page, shot_of};
 
 /// The most connections at a time.
 const MOST_CONNECTIONS: usize = 8;
@@ -38,9 +39,6 @@ const REFUSED_WAIT: Duration = Duration::from_millis(100);
 /// The answer to whoever comes while all places are taken.
 const TURNED_AWAY_WAIT: Duration = Duration::from_millis(5);
 
-/// A place among the connections, which travels with its connection.
-pub(super) type Permit = Arc<OwnedSemaphorePermit>;
-
 /// Where the page is.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Address {
@@ -48,17 +46,6 @@ pub struct Address {
     pub port: u16,
     /// The whole address, with the token.
     pub url: String,
-}
-
-/// What every request can reach.
-#[derive(Clone)]
-pub(super) struct ServerState {
-    pub board: Arc<Board>,
-    asker: Asker,
-    guard: Arc<Guard>,
-    page: Arc<Page>,
-    /// Moments are played one at a time, beside learning.
-    player: Arc<Semaphore>,
 }
 
 /// Begins to serve the page on a thread of its own, until the program ends.

@@ -9,7 +9,7 @@ use axum::extract::ws::{CloseFrame, Message, WebSocket, WebSocketUpgrade, close_
 use axum::response::Response;
 
 use super::board::Board;
-use super::server::{Permit, ServerState};
+use super::shared::{Permit, ServerState};
 
 /// Longest message that a page may send, bytes; it has nothing to say.
 const MOST_BYTES: usize = 4096;

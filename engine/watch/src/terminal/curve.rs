@@ -40,7 +40,7 @@ impl Axes {
     }
 }
 
-pub(super) fn draw(view: &View, area: Rect, buffer: &mut Buffer) {
+pub(super) fn draw_curve(view: &View, area: Rect, buffer: &mut Buffer) {
     let (Some(shown), Some(document)) = (&view.shown.run, view.document()) else { return };
     let unit = Span::styled(format!("reward per {} steps", document.window_steps), TerminalInk::quiet());
     let inner = heading("Learning curve", vec![unit], area, buffer);

@@ -17,7 +17,7 @@ pub(super) fn height(view: &View, width: u16) -> u16 {
     if text.is_empty() { 0 } else { (1 + text.len()) as u16 }
 }
 
-pub(super) fn draw(view: &View, area: Rect, buffer: &mut Buffer) {
+pub(super) fn draw_findings(view: &View, area: Rect, buffer: &mut Buffer) {
     let lines = found(view, area.width);
     let count = view.document().map_or(0, |document| document.findings.len());
     let notes = if count > 0 { vec![Span::styled(count.to_string(), view.ink.warning())] } else { Vec::new() };

@@ -37,7 +37,7 @@ use crossterm::event::{self, Event};
 pub use ink::TerminalInk;
 pub use keys::Wish;
 pub use player::{Moment, Question};
-pub use screen::draw;
+pub use screen::draw_screen;
 pub use view::{Panel, View};
 
 use super::board::Board;
@@ -102,7 +102,7 @@ fn follow(tty: &mut Tty, board: &Board, asker: &Asker, address: &str, stop: &Ato
             {
                 view.take(answer);
             }
-            tty.draw(|area, buffer| draw(&view, area, buffer)).map_err(|error| failed(&error))?;
+            tty.draw(|area, buffer| draw_screen(&view, area, buffer)).map_err(|error| failed(&error))?;
             stale = false;
         }
         let wait = if view.is_playing() { FRAME.saturating_sub(last.elapsed()) } else { GLANCE };

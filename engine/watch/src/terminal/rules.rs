@@ -21,7 +21,7 @@ pub(super) fn height(view: &View, body: Rect) -> u16 {
     (1 + rules.max(1)).min(body.height / 3)
 }
 
-pub(super) fn draw(view: &View, area: Rect, buffer: &mut Buffer) {
+pub(super) fn draw_rules(view: &View, area: Rect, buffer: &mut Buffer) {
     let Some(document) = view.document() else { return };
     let longest = document.rules.iter().map(|rule| columns(&fit(&rule.name, 40))).max().unwrap_or(0);
     let name_width = longest.clamp(6, usize::from(area.width / 5).max(12));

@@ -15,7 +15,7 @@ const LEAST: (u16, u16) = (40, 12);
 const LEAST_TOP: u16 = 7;
 
 /// Draws the screen as it is now.
-pub fn draw(view: &View, area: Rect, buffer: &mut Buffer) {
+pub fn draw_screen(view: &View, area: Rect, buffer: &mut Buffer) {
     if area.width < LEAST.0 || area.height < LEAST.1 {
         let words = format!(
             "{} x {} is too small: make the window {} x {} or larger; q quits",
@@ -65,12 +65,12 @@ fn panels(view: &View, body: Rect, buffer: &mut Buffer) {
     let [top, middle, below] = rows(body, [0, rules_height, notes_height]);
     top_panels(view, top, buffer);
     if rules_height > 0 {
-        rules::draw(view, middle, buffer);
+        rules::draw_rules(view, middle, buffer);
     }
     if wrong {
         findings::error(view, below, buffer);
     } else if notes_height > 0 {
-        findings::draw(view, below, buffer);
+        findings::draw_findings(view, below, buffer);
     }
 }
 
@@ -78,31 +78,31 @@ fn top_panels(view: &View, area: Rect, buffer: &mut Buffer) {
     if area.width < 64 {
         let half = if area.height >= 2 * LEAST_TOP { area.height / 2 } else { 0 };
         let [upper, lower] = rows(area, [0, half]);
-        world::draw(view, upper, buffer);
+        world::draw_world(view, upper, buffer);
         if half > 0 {
-            curve::draw(view, lower, buffer);
+            curve::draw_curve(view, lower, buffer);
         }
         return;
     }
     let left_width = if area.width >= 100 { area.width * 11 / 20 } else { area.width / 2 };
     let left = Rect { width: left_width, ..area };
     let right = Rect { x: area.x + left_width + 1, width: area.width - left_width - 1, ..area };
-    world::draw(view, left, buffer);
+    world::draw_world(view, left, buffer);
     let step_height = if area.height >= 22 { (area.height / 2).min(step::height(view) + 1) } else { 0 };
     let [upper, lower] = rows(right, [0, step_height]);
-    curve::draw(view, upper, buffer);
+    curve::draw_curve(view, upper, buffer);
     if step_height > 0 {
-        step::draw(view, lower, buffer);
+        step::draw_step(view, lower, buffer);
     }
 }
 
 fn panel_at(view: &View, panel: Panel, area: Rect, buffer: &mut Buffer) {
     match panel {
-        Panel::World => world::draw(view, area, buffer),
-        Panel::Curve => curve::draw(view, area, buffer),
-        Panel::Rules => rules::draw(view, area, buffer),
-        Panel::Step => step::draw(view, area, buffer),
-        Panel::Findings => findings::draw(view, area, buffer),
+        Panel::World => world::draw_world(view, area, buffer),
+        Panel::Curve => curve::draw_curve(view, area, buffer),
+        Panel::Rules => rules::draw_rules(view, area, buffer),
+        Panel::Step => step::draw_step(view, area, buffer),
+        Panel::Findings => findings::draw_findings(view, area, buffer),
     }
 }
 

@@ -20,7 +20,7 @@ pub(super) fn height(view: &View) -> u16 {
     lines(view, 60).len().max(8) as u16
 }
 
-pub(super) fn draw(view: &View, area: Rect, buffer: &mut Buffer) {
+pub(super) fn draw_step(view: &View, area: Rect, buffer: &mut Buffer) {
     let inner = heading("This step", vec![Span::styled(whole(view.step as u64), TerminalInk::quiet())], area, buffer);
     if view.record().is_none() {
         nothing("no step is recorded", inner, buffer);

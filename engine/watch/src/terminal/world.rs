@@ -54,7 +54,7 @@ impl Map {
     }
 }
 
-pub(super) fn draw(view: &View, area: Rect, buffer: &mut Buffer) {
+pub(super) fn draw_world(view: &View, area: Rect, buffer: &mut Buffer) {
     let Some(document) = view.document() else { return };
     let mut dots = Dots::new(area.width, area.height.saturating_sub(1));
     let map = Map::new(document.world.bounds_m, dots.size());
