@@ -72,6 +72,23 @@ impl<R: Robot> Cycle<R> {
 
     /// From the next observation on the image is asked for in another format: in colour, for whoever wants to look at it
     /// though the filters look at brightness alone. States and rewards stay the same.
+    ///
+    /// ```
+    /// use engine::experiment::{Cycle, Overrides, Phase, Plan};
+    /// use engine::script::Behaviour;
+    ///
+    /// # let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scripts/wall.rhai");
+    /// # /*
+    /// let script = "scripts/wall.rhai";
+    /// # */
+    /// let plan = Plan::new(Behaviour::load(script.as_ref())?.into(), &Overrides::default())?;
+    /// let cycle = || Cycle::new(&plan, Phase::Learning.robot(&plan, 1)?);
+    /// let (mut grey, mut colour) = (cycle()?, cycle()?);
+    /// colour.ask_for(filter_api::Format::Rgb);
+    /// assert_eq!(grey.step(3)?, colour.step(3)?);
+    /// assert_eq!(grey.observation().image.pixels.len() * 3, colour.observation().image.pixels.len());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn ask_for(&mut self, format: Format) {
         let Image { width_px, height_px, .. } = self.observation.image;
         self.observation.image = Image::of(format, width_px, height_px);

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Ledger, Phase, Plan, Playback};
+use super::{Plan, Playback};
 use crate::diagnostic::Result;
 use crate::judge::{FactRead, Judge, PartRead, RuleText};
 
@@ -133,16 +133,6 @@ impl StepReasons {
             prey: record.prey,
             rules: rules.collect(),
         }))
-    }
-
-    /// The reasons of one step of a recorded phase.
-    ///
-    /// # Errors
-    /// If the phase has no such step, or cannot be played.
-    pub fn of_step(plan: &Plan, seed: u64, phase: Phase, ledger: &Ledger, step: usize) -> Result<Option<Self>> {
-        let mut playback = Playback::new(plan, seed, phase, ledger)?;
-        playback.seek(step)?;
-        Self::of_next(&mut playback)
     }
 }
 

@@ -91,6 +91,7 @@ impl Laser {
     }
 
     /// Continues as if `scans` scans had been taken.
+    #[cfg(test)]
     pub fn set_scans(&mut self, scans: u64) {
         self.scans = scans;
     }

@@ -52,6 +52,56 @@ pub struct Cells {
 }
 
 /// How percepts become states.
+///
+/// A map of one's own takes the place of the grid's by [`crate::experiment::Cycle::with_map`]:
+///
+/// ```
+/// use engine::diagnostic::SourceText;
+/// use engine::experiment::{Cycle, Overrides, Phase, Plan};
+/// use engine::script::Behaviour;
+/// use engine::state::{Described, Digit, Percept, StateMap};
+///
+/// /// On which side of the image the filters have left more.
+/// struct Side;
+///
+/// impl StateMap for Side {
+///     fn encode(&mut self, percept: Percept<'_>) -> usize {
+///         let width = percept.image.width_px;
+///         let left = |row: &[u8]| row[..width / 2].iter().filter(|pixel| **pixel != 0).count();
+///         let right = |row: &[u8]| row[width / 2..].iter().filter(|pixel| **pixel != 0).count();
+///         let rows = || percept.mask.chunks_exact(width);
+///         usize::from(rows().map(right).sum::<usize>() > rows().map(left).sum())
+///     }
+///     fn states(&self) -> usize {
+///         2
+///     }
+///     fn digits(&self) -> Vec<Digit> {
+///         vec![Digit { part: 0, values: 2 }]
+///     }
+///     fn describe(&self, state: usize) -> Described {
+///         Described { text: ["left", "right"][state].to_owned(), cells: None }
+///     }
+///     fn mirrored(&self, state: usize) -> Option<usize> {
+///         Some(1 - state)
+///     }
+///     fn to_table(&self) -> toml::Table {
+///         toml::Table::new()
+///     }
+/// }
+///
+/// let script = "world(\"room\"); rule \"too close\" when laser.nearest <= 0.25 => -1 then recover;";
+/// # let place = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scripts/side.rhai");
+/// # /*
+/// let place = "scripts/side.rhai"; // worlds are looked for beside it
+/// # */
+/// let behaviour = Behaviour::parse("side", SourceText::new(place, script))?;
+/// let plan = Plan::new(behaviour.into(), &Overrides::default())?;
+/// let mut cycle = Cycle::with_map(&plan, Phase::Learning.robot(&plan, 1)?, Box::new(Side))?;
+/// let step = cycle.step(0)?;
+/// assert!(step.next_state < 2);
+/// assert_eq!(plan.task(cycle.state_map(), 1)?.states, 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait StateMap: Send {
     /// The state of what is perceived now, below [`StateMap::states`].
     fn encode(&mut self, percept: Percept<'_>) -> usize;

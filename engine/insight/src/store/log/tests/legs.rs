@@ -129,7 +129,9 @@ fn reasons_are_those_of_the_script_of_the_leg() {
     let plan = swapped(Carry::Keep);
     let (_, log) = learn(&plan);
     let names = |step| {
-        let reasons = StepReasons::of_step(&plan, SEED, Phase::Learning, &log.learning, step).unwrap().unwrap();
+        let mut playback = Playback::new(&plan, SEED, Phase::Learning, &log.learning).unwrap();
+        playback.seek(step).unwrap();
+        let reasons = StepReasons::of_next(&mut playback).unwrap().unwrap();
         let fired: Vec<(String, f64)> =
             reasons.rules.iter().filter_map(|rule| Some((rule.name.clone(), rule.added?))).collect();
         assert_eq!(fired.iter().map(|(_, added)| added).sum::<f64>(), reasons.reward, "step {step}");
