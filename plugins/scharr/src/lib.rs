@@ -47,8 +47,9 @@ struct Scharr {
 }
 
 fn create(values: &[f64]) -> Result<Box<dyn Filter>, FilterError> {
-    let [threshold] = values else {
-        return Err(FilterError(format!("scharr takes 1 parameter, not {}", values.len())));
+    let threshold = match values {
+        [threshold] => *threshold,
+        _ => return Err(FilterError(format!("scharr takes 1 parameter, not {}", values.len()))),
     };
     // Gradients are whole numbers, so comparing with the next whole square is exact.
     let least_square = (threshold * threshold).ceil() as i32;
