@@ -53,7 +53,7 @@ pub struct Cells {
 
 /// How percepts become states.
 ///
-/// A map of one's own takes the place of the grid's by [`crate::experiment::Cycle::with_map`]:
+/// A map of one's own takes the place of the grid's by `Cycle::with_map`:
 ///
 /// ```
 /// use engine::diagnostic::SourceText;
