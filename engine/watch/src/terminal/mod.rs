@@ -7,7 +7,7 @@
 //!                screen.rs --> world.rs, curve.rs, rules.rs, step.rs, findings.rs, foot.rs --> tty.rs
 //! ```
 //!
-//! Drawing is a pure function from a [`View`] to a buffer of characters ([`draw`]). Every text of a script or a world goes
+//! Drawing is a pure function from a [`View`] to a buffer of characters ([`screen::draw_screen`]). Every text of a script or a world goes
 //! through [`engine::diagnostic::printable`] before it is drawn. Learning never waits for the terminal.
 
 mod curve;
