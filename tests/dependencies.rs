@@ -171,3 +171,26 @@ fn every_crate_comes_from_a_place_that_deny_toml_allows() {
         assert!(known, "{name} comes from {source}: see deny.toml");
     }
 }
+
+/// How many crates a package needs to be built for use.
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+fn crates_of(package: &str, features: &[&str]) -> usize {
+    let mut command = Command::new(env!("CARGO"));
+    command
+        .args(["tree", "--edges", "normal", "--prefix", "none", "--locked", "--offline", "--package", package])
+        .args(features);
+    let tree = output(&mut command);
+    let name = |line: &str| line.split_whitespace().take(2).collect::<Vec<_>>().join(" ");
+    tree.lines().filter(|line| !line.is_empty()).map(name).collect::<std::collections::BTreeSet<_>>().len()
+}
+
+#[test]
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+fn the_library_and_the_program_stay_small() {
+    for (package, features, most) in
+        [("engine", &["--no-default-features"][..], 100), ("engine", &[], 120), ("program", &[], 200)]
+    {
+        let count = crates_of(package, features);
+        assert!(count <= most, "{package} {features:?} needs {count} crates, more than {most}");
+    }
+}

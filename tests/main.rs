@@ -64,6 +64,6 @@ mod shipped;
 /// The live view in the terminal: its screen, its keys, and itself in a pseudo terminal.
 #[cfg(feature = "tui")]
 mod terminal;
-/// The live page by raw sockets: what is refused, what is told.
+/// The live page by raw connections: what is refused, what is told.
 #[cfg(feature = "serve")]
 mod watch;

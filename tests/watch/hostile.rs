@@ -1,7 +1,7 @@
 use std::io::{Read, Write};
 use std::net::TcpListener;
 
-use super::served::{Served, UPGRADE, frame, message, status};
+use super::served::{Served, message, status};
 
 #[test]
 fn another_name_in_the_host_is_refused() {
@@ -21,17 +21,25 @@ fn another_name_in_the_host_is_refused() {
 }
 
 #[test]
-fn a_websocket_from_another_page_is_refused() {
+fn another_page_reads_nothing() {
     let served = Served::new(&[]);
     let port = served.port;
-    for origin in ["https://evil.com", "null", "http://127.0.0.1", "http://evil.com:80"] {
-        assert_eq!(served.status("GET", "/live", &format!("Origin: {origin}\r\n{UPGRADE}")), 403, "{origin}");
+    for path in ["/", "/live", "/track", "/frame"] {
+        for origin in ["https://evil.com", "null", "http://127.0.0.1", "http://evil.com:80"] {
+            assert_eq!(served.status("GET", path, &format!("Origin: {origin}\r\n")), 403, "{origin}");
+        }
+        let two = format!("Origin: http://127.0.0.1:{port}\r\nOrigin: null\r\n");
+        assert_eq!(served.status("GET", path, &two), 403);
+        // What is only embedded, as a picture or a script, comes without an Origin.
+        for site in ["cross-site", "same-site"] {
+            assert_eq!(served.status("GET", path, &format!("Sec-Fetch-Site: {site}\r\n")), 403, "{site}");
+        }
     }
-    assert_eq!(served.status("GET", "/live", UPGRADE), 403);
-    let two = format!("Origin: http://127.0.0.1:{port}\r\nOrigin: null\r\n{UPGRADE}");
-    assert_eq!(served.status("GET", "/live", &two), 403);
-    assert_eq!(served.status("GET", "/", "Origin: https://evil.com\r\n"), 403);
-    drop(served.socket());
+    for own in [format!("Origin: http://127.0.0.1:{port}\r\n"), "Sec-Fetch-Site: same-origin\r\n".to_owned()] {
+        assert_eq!(served.status("GET", "/", &own), 200);
+    }
+    assert_eq!(served.status("GET", "/", "Sec-Fetch-Site: none\r\n"), 200, "an address that was typed");
+    drop(served.events());
 }
 
 #[test]
@@ -47,11 +55,8 @@ fn without_the_token_of_this_run_nothing_is_told() {
     assert_eq!(ask(&format!("?token={}x", served.token)), 401);
     assert_eq!(ask(&format!("?token={}", &served.token[..31])), 401);
     assert_eq!(ask(&format!("?token={}", served.token)), 200);
-    let socket = format!(
-        "GET /live?token={} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nOrigin: http://127.0.0.1:{port}\r\n{UPGRADE}\r\n",
-        other.token
-    );
-    assert_eq!(status(&served.answer(socket.as_bytes())), 401);
+    let live = format!("GET /live?token={} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n", other.token);
+    assert_eq!(status(&served.answer(live.as_bytes())), 401);
 }
 
 #[test]
@@ -84,11 +89,28 @@ fn what_is_too_long_is_refused_before_it_is_read() {
     assert_eq!(served.status("GET", "/", &format!("X: {}\r\n", "a".repeat(9000))), 431);
     assert_eq!(served.status("POST", "/relearn", &format!("{own}Content-Length: 1073741824\r\n")), 413);
     assert_eq!(served.status("POST", "/relearn", &format!("{own}Transfer-Encoding: chunked\r\n")), 413);
-    let mut socket = served.socket();
-    // The beginning of a frame that says it has 100 MiB.
-    socket.write_all(&[0x82, 0xff, 0, 0, 0, 0, 6, 64, 0, 0, 1, 2, 3, 4]).unwrap();
-    let (_, content) = std::iter::repeat_with(|| frame(&mut socket)).find(|(kind, _)| *kind == 8).unwrap();
-    assert_eq!(content[..2], 1009_u16.to_be_bytes());
+    assert_eq!(served.status("GET", "/", &"X: 1\r\n".repeat(65)), 431);
+}
+
+#[test]
+fn who_talks_to_the_stream_of_events_is_left() {
+    let served = Served::new(&[]);
+    let mut events = served.events();
+    events.get_mut().write_all(b"GET / HTTP/1.1\r\n").unwrap();
+    // It ends, or the read would time out.
+    let mut told = String::new();
+    let end = events.read_to_string(&mut told);
+    assert!(end.is_ok() || end.is_err_and(|error| error.kind() == std::io::ErrorKind::ConnectionReset), "{told}");
+}
+
+#[test]
+fn who_closes_the_stream_of_events_gives_up_the_place() {
+    let served = Served::new(&[]);
+    let held: Vec<_> = (0..8).map(|_| served.events()).collect();
+    assert_eq!(served.status("GET", "/", ""), 503);
+    drop(held);
+    let again = std::iter::repeat_with(|| served.status("GET", "/", "")).find(|status| *status != 503);
+    assert_eq!(again, Some(200));
 }
 
 #[test]
@@ -121,8 +143,8 @@ fn a_ninth_connection_is_sent_away() {
 #[test]
 fn a_client_that_does_not_read_holds_nothing_up() {
     let served = Served::new(&[]);
-    let _stalled: Vec<_> = (0..3).map(|_| served.socket()).collect();
-    let mut reader = served.socket();
+    let _stalled: Vec<_> = (0..3).map(|_| served.events()).collect();
+    let mut reader = served.events();
     for save in 1..=4 {
         message(&mut reader, |said| said["kind"] == "run" && said["save"] == save && said["done"] == true);
         let script = format!("// {save}\n{}", crate::support::SCRIPT);

@@ -1,11 +1,14 @@
+use std::io::BufReader;
+use std::net::TcpStream;
+
 use serde_json::Value;
 
 use super::served::{Served, message};
 use crate::support::{SCRIPT, WORLD};
 
 /// The run of a save, learned and tested.
-fn done(socket: &mut std::net::TcpStream, save: u64) -> Value {
-    message(socket, |said| said["kind"] == "run" && said["save"] == save && said["done"] == true)
+fn done(events: &mut BufReader<TcpStream>, save: u64) -> Value {
+    message(events, |said| said["kind"] == "run" && said["save"] == save && said["done"] == true)
 }
 
 /// Waits until the folder holds a run of so many steps.
@@ -30,13 +33,13 @@ fn written(served: &Served, steps: u64) {
 fn a_kept_table_learns_on_and_the_run_on_disk_is_reproduced_bit_for_bit() {
     for (how, table) in [("--keep", "keep"), ("--keep=decay", "decay"), ("--keep=reset", "reset")] {
         let served = Served::new(&["--port", "0", how, "--out", "kept"]);
-        let mut socket = served.socket();
-        let first = done(&mut socket, 1);
+        let mut events = served.events();
+        let first = done(&mut events, 1);
         assert!(first["document"]["swaps"].as_array().unwrap().is_empty());
         served
             .bench
             .write("short.rhai", SCRIPT.replace("<= 0.25 => -1", "<= 0.4 => -2").replace("\"contact\"", "\"touch\""));
-        let second = done(&mut socket, 2);
+        let second = done(&mut events, 2);
         let document = &second["document"];
         assert_eq!(document["swaps"], serde_json::json!([{ "step": 800, "table": table }]));
         let curve = document["seeds"][1]["curve"].as_array().unwrap();
@@ -63,12 +66,12 @@ fn a_kept_table_learns_on_and_the_run_on_disk_is_reproduced_bit_for_bit() {
 #[test]
 fn a_save_while_the_robots_learn_swaps_the_reward_at_a_step_that_replay_finds_again() {
     let served = Served::new(&["--port", "0", "--keep", "--out", "kept"]);
-    let mut socket = served.socket();
-    done(&mut socket, 1);
+    let mut events = served.events();
+    done(&mut events, 1);
     served.bench.write("short.rhai", SCRIPT.replace("steps: 800", "steps: 300_000"));
-    message(&mut socket, |said| said["kind"] == "run" && said["save"] == 2);
+    message(&mut events, |said| said["kind"] == "run" && said["save"] == 2);
     served.bench.write("short.rhai", SCRIPT.replace("steps: 800", "steps: 400").replace("=> -1", "=> -3"));
-    let swapped = done(&mut socket, 3);
+    let swapped = done(&mut events, 3);
     let swaps = swapped["document"]["swaps"].as_array().unwrap();
     let step = swaps[1]["step"].as_u64().unwrap();
     assert_eq!((swaps.len(), swaps[0]["step"].as_u64(), step % 400), (2, Some(800), 0));
@@ -84,38 +87,38 @@ fn a_save_while_the_robots_learn_swaps_the_reward_at_a_step_that_replay_finds_ag
 #[test]
 fn a_bad_save_lets_the_robots_learn_on_under_the_last_good_script() {
     let served = Served::new(&["--port", "0", "--keep", "--out", "kept"]);
-    let mut socket = served.socket();
-    done(&mut socket, 1);
+    let mut events = served.events();
+    done(&mut events, 1);
     served.bench.write("short.rhai", SCRIPT.replace("steps: 800", "steps: 150_000"));
-    message(&mut socket, |said| said["kind"] == "run" && said["save"] == 2);
+    message(&mut events, |said| said["kind"] == "run" && said["save"] == 2);
     served.bench.write("short.rhai", SCRIPT.replace("laser.nearest", "laser.nearst"));
-    message(&mut socket, |said| said["kind"] == "failed");
-    let run = done(&mut socket, 3);
+    message(&mut events, |said| said["kind"] == "failed");
+    let run = done(&mut events, 3);
     assert_eq!(run["document"]["planned_steps"], 150_800);
     assert!(run["document"]["script"].as_str().unwrap().contains("150_000"));
     // The error stays in sight.
-    assert_eq!(message(&mut socket, |_| true)["kind"], "failed");
+    assert_eq!(message(&mut events, |_| true)["kind"], "failed");
     served.bench.write("short.rhai", SCRIPT);
-    assert_eq!(done(&mut socket, 4)["document"]["planned_steps"], 151_600);
+    assert_eq!(done(&mut events, 4)["document"]["planned_steps"], 151_600);
 }
 
 #[test]
 fn what_changes_more_than_the_reward_is_learned_from_nothing() {
     let served = Served::new(&["--port", "0", "--keep", "--out", "kept"]);
-    let mut socket = served.socket();
-    done(&mut socket, 1);
+    let mut events = served.events();
+    done(&mut events, 1);
     served.bench.write("short.rhai", format!("camera(#{{ tilt_deg: 40 }});\n{SCRIPT}"));
-    let run = done(&mut socket, 2);
+    let run = done(&mut events, 2);
     assert_eq!(
         (run["document"]["swaps"].as_array().unwrap().len(), &run["document"]["planned_steps"]),
         (0, &800.into())
     );
     assert!(run["text"].as_str().unwrap().contains("camera.tilt_deg changed, so from nothing"), "{}", run["text"]);
     served.bench.write("worlds/small.toml", WORLD.replace("[3.0, 0.7]", "[2.0, 0.7]"));
-    let run = done(&mut socket, 3);
+    let run = done(&mut events, 3);
     assert!(run["text"].as_str().unwrap().contains("the world changed, so from nothing"), "{}", run["text"]);
     // Whoever asks for it gets it from nothing too.
     let own = format!("Origin: http://127.0.0.1:{}\r\nContent-Length: 0\r\n", served.port);
     assert_eq!(served.status("POST", "/relearn", &own), 202);
-    assert!(done(&mut socket, 4)["document"]["swaps"].as_array().unwrap().is_empty());
+    assert!(done(&mut events, 4)["document"]["swaps"].as_array().unwrap().is_empty());
 }

@@ -65,60 +65,37 @@ impl Served {
         ))
     }
 
-    /// A WebSocket, as the page opens it.
-    pub(crate) fn socket(&self) -> TcpStream {
+    /// The stream of events, as the page opens it.
+    pub(crate) fn events(&self) -> BufReader<TcpStream> {
         let Self { port, token, .. } = self;
         let mut stream = self.connect();
-        let request = format!(
-            "GET /live?token={token} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nOrigin: http://127.0.0.1:{port}\r\n{UPGRADE}\r\n"
-        );
+        let request = format!("GET /live?token={token} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n");
         stream.write_all(request.as_bytes()).unwrap();
-        let mut head = Vec::new();
-        while !head.ends_with(b"\r\n\r\n") {
-            let mut byte = [0];
-            stream.read_exact(&mut byte).unwrap();
-            head.push(byte[0]);
+        let mut events = BufReader::new(stream);
+        let mut head = String::new();
+        while !head.ends_with("\r\n\r\n") {
+            assert!(events.read_line(&mut head).unwrap() > 0, "{head}");
         }
-        assert_eq!(status(&String::from_utf8_lossy(&head)), 101);
-        stream
+        assert!(status(&head) == 200 && head.contains("content-type: text/event-stream\r\n"), "{head}");
+        events
     }
 }
-
-/// The headers of a WebSocket.
-pub(crate) const UPGRADE: &str = "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n\
-                                  Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
 
 pub(crate) fn status(answer: &str) -> u16 {
     answer.split(' ').nth(1).and_then(|status| status.parse().ok()).unwrap_or(0)
 }
 
-/// The next frame of a WebSocket: its kind and its content.
-pub(crate) fn frame(stream: &mut TcpStream) -> (u8, Vec<u8>) {
-    let mut head = [0; 2];
-    stream.read_exact(&mut head).unwrap();
-    let mut wide = [0; 8];
-    let length = match head[1] {
-        126 => {
-            stream.read_exact(&mut wide[6..]).unwrap();
-            u64::from_be_bytes(wide)
-        }
-        127 => {
-            stream.read_exact(&mut wide).unwrap();
-            u64::from_be_bytes(wide)
-        }
-        short => u64::from(short),
-    };
-    let mut content = vec![0; length as usize];
-    stream.read_exact(&mut content).unwrap();
-    (head[0] & 15, content)
-}
-
 /// The next message of some kind: `run`, `failed`, `working`.
-pub(crate) fn message(stream: &mut TcpStream, wanted: impl Fn(&serde_json::Value) -> bool) -> serde_json::Value {
+pub(crate) fn message(
+    events: &mut BufReader<TcpStream>,
+    wanted: impl Fn(&serde_json::Value) -> bool,
+) -> serde_json::Value {
     loop {
-        let (kind, content) = frame(stream);
-        assert_eq!(kind, 1);
-        let message = serde_json::from_slice(&content).unwrap();
+        let (mut line, mut end) = (String::new(), String::new());
+        events.read_line(&mut line).unwrap();
+        events.read_line(&mut end).unwrap();
+        assert_eq!(end, "\n", "a message is one line of data: {line}");
+        let message = serde_json::from_str(line.strip_prefix("data: ").unwrap()).unwrap();
         if wanted(&message) {
             return message;
         }

@@ -9,7 +9,7 @@ use super::job::{Learn, Trial};
 use super::looks::{Look, Seen, Watcher};
 use engine::diagnostic::Result;
 use engine::experiment::{
-    Overrides, Plan, Summary, TestFigures, TestRun, Trail, WINDOW_STEPS, in_parallel, learn, test, test_and_watch,
+    Overrides, Plan, RunLog, Summary, TestFigures, TestRun, Trail, WINDOW_STEPS, in_parallel, run_seed, test_and_watch,
 };
 use engine::learner::Policy;
 use engine::script::Behaviour;
@@ -202,8 +202,9 @@ impl Job {
 
     fn learn_and_test(&self, seed: u64, stop: &AtomicBool, done: &(dyn Fn(u64) + Sync)) -> Result<Option<Outcome>> {
         let Ok(plan) = &self.plan else { return Ok(None) };
-        let learned = learn(plan, seed, stop, &|_| done(WINDOW_STEPS))?;
-        let tested = test(plan, &learned.policy, seed, stop)?;
+        let run = run_seed(plan, seed, stop, &|_| done(WINDOW_STEPS), &mut RunLog::off())?;
+        // A behaviour that combines policies learns nothing that a claim could be about.
+        let Some(learned) = run.learned else { return Ok(None) };
         done(plan.settings.run.test_steps);
         let trials = (self.trials.iter())
             .map(|(trial, plan)| {
@@ -213,8 +214,7 @@ impl Job {
                 Ok(Some(seen))
             })
             .collect::<Result<Vec<_>>>()?;
-        // The clock is not read here: no row depends on it.
-        let summary = Summary::new(plan, seed, Some(&learned), &tested);
+        let (summary, tested) = (run.summary, run.tested);
         Ok(Some(Outcome { summary, early: learned.early, tested, policy: learned.policy, trials }))
     }
 }

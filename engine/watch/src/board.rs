@@ -1,21 +1,22 @@
 //! What the page and the terminal are told: the last good run, the error after it, what is being done. Written by the one
 //! thread that learns, read by the server and the terminal; nobody waits for a reader.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-
-use serde::Serialize;
-use tokio::sync::watch;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use engine::diagnostic::{Diagnostic, Result, Severity};
 use engine::experiment::{Learned, Ledger, Plan, TestFigures};
 use insight::lint::Report;
 use insight::page::{CheckView, Document, FindingView, SeedData, SeedView};
+use serde::Serialize;
 
 /// One seed of a run.
 #[derive(Debug)]
 pub struct WatchedSeed {
-    /// What it learned; of a behaviour that combines policies nothing, in no steps.
-    pub learned: Arc<Learned>,
+    /// Its number.
+    pub seed: u64,
+    /// What it learned; nothing of a behaviour that combines policies.
+    pub learned: Option<Arc<Learned>>,
     /// Steps of learning.
     pub learning: Arc<Ledger>,
     /// The test's figures, once it is done.
@@ -25,13 +26,18 @@ pub struct WatchedSeed {
 }
 
 impl WatchedSeed {
+    /// The curve of learning; none of what combines.
+    #[must_use]
+    pub fn curve(&self) -> Vec<f64> {
+        self.learned.as_ref().map_or_else(Vec::new, |learned| learned.tally.curve())
+    }
+
     /// The seed as the page's room reads it.
     #[must_use]
     pub fn data(&self) -> SeedData<'_> {
-        // Of a behaviour that combines policies nothing was learned.
-        let learned = Some(&self.learned).filter(|learned| learned.steps > 0);
+        let learned = self.learned.as_deref();
         SeedData {
-            seed: self.learned.seed,
+            seed: self.seed,
             tally: learned.map(|learned| &learned.tally),
             policy: learned.map(|learned| &learned.policy),
             test: self.test.as_ref(),
@@ -122,15 +128,10 @@ impl Written {
 }
 
 /// The board.
+#[derive(Default)]
 pub struct Board {
     written: Mutex<Written>,
-    news: watch::Sender<u64>,
-}
-
-impl Default for Board {
-    fn default() -> Self {
-        Self { written: Mutex::default(), news: watch::Sender::new(0) }
-    }
+    news: Condvar,
 }
 
 impl Board {
@@ -182,9 +183,8 @@ impl Board {
         written.run = Some((written.number, text));
         (written.checked, written.last) = (None, None);
         written.saved = Some(Arc::clone(run));
-        let number = written.number;
         drop(written);
-        self.news.send_replace(number);
+        self.news.notify_all();
         Ok(())
     }
 
@@ -210,9 +210,8 @@ impl Board {
         let mut written = self.lock();
         written.number += 1;
         written.checked = Some((written.number, text));
-        let number = written.number;
         drop(written);
-        self.news.send_replace(number);
+        self.news.notify_all();
     }
 
     /// The run that is shown, if its save has this number.
@@ -220,16 +219,12 @@ impl Board {
         self.lock().saved.clone().filter(|run| run.save == save)
     }
 
-    /// What a page that knows all up to number `after` must get.
-    pub(super) fn posted(&self, after: u64) -> Posted {
-        let written = self.lock();
+    /// What a page that knows all up to number `after` must get; waits for it, but not longer than `most`.
+    pub(super) fn posted(&self, after: u64, most: Duration) -> Posted {
+        let waited = self.news.wait_timeout_while(self.lock(), most, |written| written.number <= after);
+        let (written, _) = waited.unwrap_or_else(PoisonError::into_inner);
         let all = [&written.run, &written.checked, &written.last].into_iter().flatten();
         Posted { messages: all.filter(|(number, _)| *number > after).cloned().collect() }
-    }
-
-    /// Tells when there is something new.
-    pub(super) fn news(&self) -> watch::Receiver<u64> {
-        self.news.subscribe()
     }
 
     fn post(&self, message: &Message<'_>, tell: impl FnOnce(&mut Shown)) {
@@ -238,9 +233,8 @@ impl Board {
         tell(&mut written.told);
         written.number += 1;
         written.last = Some((written.number, text));
-        let number = written.number;
         drop(written);
-        self.news.send_replace(number);
+        self.news.notify_all();
     }
 
     fn lock(&self) -> MutexGuard<'_, Written> {

@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use super::board::{Board, SavedRun, WatchedSeed};
 use engine::diagnostic::{Diagnostic, Result};
-use engine::experiment::{Overrides, Plan, TestRun};
+use engine::experiment::{Decider, Learned, Ledger, Overrides, Plan, TestRun};
 use engine::filter::Catalogue;
 use engine::learner::Carry;
 use insight::page::{Document, Moments};
@@ -57,4 +58,17 @@ impl Desk {
         error.into_iter().for_each(|error| self.board.failed(error));
         Ok(run)
     }
+}
+
+/// Tests what a seed learned, or what the plan combines; so many steps of it are kept.
+pub(super) fn test_seed(
+    plan: &Plan,
+    seed: u64,
+    learned: Option<&Learned>,
+    room: u64,
+    stop: &AtomicBool,
+) -> Result<(TestRun, Ledger)> {
+    let mut kept = Ledger::new(plan, plan.settings.run.test_steps.min(room));
+    let tested = Decider::of(learned).test(plan, seed, stop, &mut kept)?;
+    Ok((tested, kept))
 }

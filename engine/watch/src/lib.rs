@@ -4,7 +4,7 @@
 //! ```text
 //!   files.rs (saves) --> relearn.rs, session.rs (all cores) --> board.rs (the last good run, the last error)
 //!                                                                    ^ reads
-//!   browser <--> socket.rs, guard.rs, server.rs (one thread) --------+
+//!   browser <--> request.rs, guard.rs, server.rs, answer.rs, events.rs +
 //!   terminal <--> terminal/ (one thread) ----------------------------+
 //! ```
 //!
@@ -13,17 +13,18 @@
 //! Learning writes to the board and never waits for a reader. The server listens on loopback only; whoever asks must know
 //! the token, and come from the page's own address.
 
+mod answer;
 mod board;
 mod combined;
 mod desk;
+mod events;
 mod files;
 mod findings;
 mod guard;
 mod relearn;
+mod request;
 mod server;
 mod session;
-mod shared;
-mod socket;
 #[cfg(feature = "tui")]
 pub mod terminal;
 

@@ -7,12 +7,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::board::{Board, SavedRun, WatchedSeed};
-use super::desk::{Desk, WatchSettings};
+use super::desk::{Desk, WatchSettings, test_seed};
 use super::files::{Files, SETTLE};
 use super::session::Session;
 use super::{combined, findings};
 use engine::diagnostic::{Diagnostic, Result};
-use engine::experiment::{Ledger, Plan, TestRun, WINDOW_STEPS, in_parallel, test_and_watch};
+use engine::experiment::{Ledger, Plan, TestRun, WINDOW_STEPS, in_parallel};
 
 /// A save is often several writes; so long it must be quiet.
 const QUIET: Duration = Duration::from_millis(15);
@@ -197,7 +197,8 @@ impl Relearner {
         }
         let (tests, ledgers): (Vec<TestRun>, Vec<Ledger>) = tested.into_iter().unzip();
         let seeds = run.seeds.iter().zip(&tests).zip(ledgers).map(|((seed, test), tested)| WatchedSeed {
-            learned: Arc::clone(&seed.learned),
+            seed: seed.seed,
+            learned: seed.learned.clone(),
             learning: Arc::clone(&seed.learning),
             test: Some(test.figures.clone()),
             tested,
@@ -214,10 +215,8 @@ impl Relearner {
     fn test(&self, run: &SavedRun, room: u64, stop: &AtomicBool) -> Result<Vec<(TestRun, Ledger)>> {
         let indices: Vec<u64> = (0..run.seeds.len() as u64).collect();
         in_parallel(&indices, self.desk.settings.threads, |index| {
-            let seed = &run.seeds[index as usize].learned;
-            let mut tested = Ledger::new(&run.plan, run.plan.settings.run.test_steps.min(room));
-            let test = test_and_watch(&run.plan, &seed.policy, seed.seed, stop, &mut tested)?;
-            Ok((test, tested))
+            let watched = &run.seeds[index as usize];
+            test_seed(&run.plan, watched.seed, watched.learned.as_deref(), room, stop)
         })
     }
 

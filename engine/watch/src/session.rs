@@ -130,11 +130,12 @@ impl Session {
     /// What failed while a seed learned.
     pub(super) fn seeds(&self, end: bool) -> Result<Vec<WatchedSeed>> {
         let seed = |pupil: &mut Pupil| {
-            let learned = Arc::new(if end { pupil.learning.finish() } else { pupil.learning.snapshot() });
+            let learned = if end { pupil.learning.finish() } else { pupil.learning.snapshot() };
             if let Some(fault) = pupil.learning.fault() {
                 return Err(Box::new(fault.clone()));
             }
-            Ok(WatchedSeed { learned, learning: Arc::clone(&pupil.ledger), test: None, tested: Ledger::off() })
+            let (seed, learning) = (learned.seed, Arc::clone(&pupil.ledger));
+            Ok(WatchedSeed { seed, learned: Some(Arc::new(learned)), learning, test: None, tested: Ledger::off() })
         };
         self.pupils.iter().map(|pupil| seed(&mut lock(pupil))).collect()
     }

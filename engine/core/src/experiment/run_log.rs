@@ -33,6 +33,18 @@ impl RunLog {
         Self { learning, test: Ledger::new(plan, plan.settings.run.test_steps.min(most)) }
     }
 
+    /// A log that keeps nothing.
+    #[must_use]
+    pub fn off() -> Self {
+        Self { learning: Ledger::off(), test: Ledger::off() }
+    }
+
+    /// Whether any step was kept.
+    #[must_use]
+    pub fn is_kept(&self) -> bool {
+        self.learning.len() + self.test.len() > 0
+    }
+
     /// SHA-256 over the records of both phases, chunk by chunk, 64 hexadecimal digits.
     #[must_use]
     pub fn sha256(&self) -> String {

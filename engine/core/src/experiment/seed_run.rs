@@ -15,8 +15,8 @@ pub struct SeedRun {
     pub summary: Summary,
 }
 
-/// Learns a plan under a seed, unless it combines policies, and tests what came of it, with every step kept in `log`.
-/// Once `stop` is set, it ends after the present window.
+/// Learns a plan under a seed, unless it combines policies, and tests what came of it, with every step kept in `log`
+/// that it has room for. Once `stop` is set, it ends after the present window.
 ///
 /// # Errors
 /// If a sensor, a filter or the script fails; what was learned before is in the error, and in the log.
@@ -27,17 +27,20 @@ pub fn run_seed(
     report: &(dyn Fn(Progress) + Sync),
     log: &mut RunLog,
 ) -> Result<SeedRun, Box<BrokenOff>> {
-    let (learned, decider) = if plan.learns() {
-        let learned = learn_into(plan, seed, stop, report, &mut log.learning)?;
-        let decider = Decider::Learned(learned.policy.clone());
-        (Some(learned), decider)
-    } else {
-        (None, Decider::Combined)
-    };
-    let tested = match decider.test(plan, seed, stop, &mut log.test) {
+    let learned = if plan.learns() { Some(learn_into(plan, seed, stop, report, &mut log.learning)?) } else { None };
+    let tested = match Decider::of(learned.as_ref()).test(plan, seed, stop, &mut log.test) {
         Ok(tested) => tested,
         Err(error) => return Err(Box::new(BrokenOff { error, learned })),
     };
-    let summary = Summary { log_sha256: Some(log.sha256()), ..Summary::new(plan, seed, learned.as_ref(), &tested) };
-    Ok(SeedRun { learned, tested, summary })
+    Ok(SeedRun::new(plan, seed, learned, tested, log))
+}
+
+impl SeedRun {
+    /// What was learned and tested elsewhere, a piece at a time, with the steps that were kept of it.
+    #[must_use]
+    pub fn new(plan: &Plan, seed: u64, learned: Option<Learned>, tested: TestRun, log: &RunLog) -> Self {
+        let mut summary = Summary::new(plan, seed, learned.as_ref(), &tested);
+        summary.log_sha256 = log.is_kept().then(|| log.sha256());
+        Self { learned, tested, summary }
+    }
 }

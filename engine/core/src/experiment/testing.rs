@@ -9,8 +9,8 @@ use super::summary::TestFigures;
 use super::trail::{Recorder, Trail};
 use super::truth::Truth;
 use super::{
-    Chooser, CombinationFigures, Cycle, Disagreements, Frozen, Member, Observer, Phase, Plan, Step, Tally, Together,
-    WINDOW_STEPS, drive,
+    Chooser, CombinationFigures, Cycle, Disagreements, Frozen, Learned, Member, Observer, Phase, Plan, Step, Tally,
+    Together, WINDOW_STEPS, drive,
 };
 use crate::diagnostic::Result;
 use crate::learner::{Combined, Policy};
@@ -59,6 +59,12 @@ pub enum Decider {
 }
 
 impl Decider {
+    /// What was learned; without it, what the plan combines.
+    #[must_use]
+    pub fn of(learned: Option<&Learned>) -> Self {
+        learned.map_or(Self::Combined, |learned| Self::Learned(learned.policy.clone()))
+    }
+
     /// Tests it for the plan's `run.test_steps`, or until `stop` is set; `also` looks on.
     ///
     /// # Errors

@@ -84,19 +84,19 @@ fn keep(word: Option<&str>) -> Option<engine::learner::Carry> {
 /// Writes every finished run to a folder.
 #[cfg(feature = "serve")]
 fn finished(out: std::path::PathBuf) -> watch::Finished {
-    use engine::experiment::{RunLog, SeedRun, Summary};
+    use engine::experiment::{RunLog, SeedRun};
     use insight::folder::{RunFolder, SeedResult};
     Box::new(move |run, tests, seconds| {
         let (plan, many) = (&run.plan, run.seeds.len() > 1);
-        let seeds: Vec<u64> = run.seeds.iter().map(|seed| seed.learned.seed).collect();
+        let seeds: Vec<u64> = run.seeds.iter().map(|seed| seed.seed).collect();
         let folder = RunFolder::create(&out, plan, &seeds)?;
         let result = |(seed, tested): (&watch::WatchedSeed, engine::experiment::TestRun)| {
             let log = RunLog { learning: (*seed.learning).clone(), test: seed.tested.clone() };
-            let learned = Some((*seed.learned).clone());
-            let summary = Summary::new(plan, seed.learned.seed, learned.as_ref(), &tested);
-            let summary = Summary { log_sha256: Some(log.sha256()), ..summary }.timed(seconds / run.seeds.len() as f64);
-            folder.keep_log(plan, seed.learned.seed, &log)?;
-            Ok(SeedResult { run: SeedRun { learned, tested, summary }, log: (!many).then_some(log) })
+            let learned = seed.learned.as_deref().cloned();
+            let mut run = SeedRun::new(plan, seed.seed, learned, tested, &log);
+            run.summary = run.summary.timed(seconds / seeds.len() as f64);
+            folder.keep_log(plan, seed.seed, &log)?;
+            Ok(SeedResult { run, log: (!many).then_some(log) })
         };
         let results = run.seeds.iter().zip(tests).map(result).collect::<engine::diagnostic::Result<Vec<_>>>()?;
         folder.write(plan, &results, None)

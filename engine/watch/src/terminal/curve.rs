@@ -44,7 +44,7 @@ pub(super) fn draw_curve(view: &View, area: Rect, buffer: &mut Buffer) {
     let (Some(shown), Some(document)) = (&view.shown.run, view.document()) else { return };
     let unit = Span::styled(format!("reward per {} steps", document.window_steps), TerminalInk::quiet());
     let inner = heading("Learning curve", vec![unit], area, buffer);
-    let curves: Vec<Vec<f64>> = shown.run.seeds.iter().map(|seed| seed.learned.tally.curve()).collect();
+    let curves: Vec<Vec<f64>> = shown.run.seeds.iter().map(|seed| seed.curve()).collect();
     let before: &[Vec<f64>] = shown.before.as_deref().unwrap_or_default();
     let values = || curves.iter().chain(before).flatten().copied();
     if inner.height < 4 || values().next().is_none() {
@@ -114,7 +114,7 @@ fn signs(view: &View, seeds: usize, before: bool, wide: bool) -> Vec<Span<'stati
         Vec::new()
     };
     let (sign, style) = if seeds > 1 { ("┈ ", TerminalInk::strong()) } else { ("━ ", accent) };
-    let seed = view.seed_run().map_or(0, |seed| seed.learned.seed);
+    let seed = view.seed_run().map_or(0, |seed| seed.seed);
     signs.extend([Span::styled(sign, style), Span::styled(format!("seed {seed}"), TerminalInk::quiet())]);
     if view.document().is_some_and(|document| !document.swaps.is_empty()) {
         signs.extend([Span::styled("  ┊ ", view.ink.warning()), Span::styled("reward swapped", TerminalInk::quiet())]);

@@ -43,15 +43,15 @@ fn status(view: &View, width: usize) -> Line<'static> {
 fn figures(view: &View, wide: bool) -> Vec<Span<'static>> {
     let (Some(shown), Some(seed)) = (&view.shown.run, view.seed_run()) else { return Vec::new() };
     let learned = |curve: Vec<f64>| learned_at(&curve);
-    let count = shown.run.seeds.iter().filter(|seed| learned(seed.learned.tally.curve()).is_some()).count();
-    let own = match learned(seed.learned.tally.curve()) {
+    let count = shown.run.seeds.iter().filter(|seed| learned(seed.curve()).is_some()).count();
+    let own = match learned(seed.curve()) {
         Some(step) if wide => format!("learned at step {}", whole(step)),
         Some(step) => format!("at step {}", whole(step)),
         None => "not learned".to_owned(),
     };
-    let number = seed.learned.seed;
+    let number = seed.seed;
     // Combined policies learn nothing.
-    let mut spans = if seed.learned.steps == 0 {
+    let mut spans = if seed.learned.is_none() {
         vec![Span::styled(format!("seed {number}"), TerminalInk::quiet())]
     } else {
         let all = Span::raw(format!("{count} of {} learned", shown.run.seeds.len()));

@@ -113,7 +113,7 @@ fn next((desk, changed): &(Mutex<PlayerDesk>, Condvar)) -> Option<Question> {
 fn play(first: &Question, desk: &(Mutex<PlayerDesk>, Condvar)) -> Option<Question> {
     let (plan, mut question) = (&first.run.plan, first.clone());
     let (Some(seed), Some(ledger)) = (first.run.seeds.get(first.seed), first.ledger()) else { return next(desk) };
-    let seed = seed.learned.seed;
+    let seed = seed.seed;
     let mut playback = Playback::new(plan, seed, first.phase, ledger).ok();
     loop {
         let newer = || {

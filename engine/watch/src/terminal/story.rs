@@ -53,8 +53,8 @@ impl Story {
                 }
             }
         }
-        let tally = &seed.learned.tally;
-        if learning && tally.fired.len() >= rules {
+        let tally = seed.learned.as_ref().map(|learned| &learned.tally).filter(|tally| tally.fired.len() >= rules);
+        if let Some(tally) = tally.filter(|_| learning) {
             // Rules that only earlier legs had come after the plan's own.
             story.fired.copy_from_slice(&tally.fired[..rules]);
             for (rule, total) in story.totals.iter_mut().enumerate() {

@@ -83,7 +83,7 @@ impl View {
 
     /// Shows what the board has now; seed, phase and step stay where they can.
     pub fn show(&mut self, shown: Shown) {
-        let seed = self.seed_run().map(|seed| seed.learned.seed);
+        let seed = self.seed_run().map(|seed| seed.seed);
         let same = |a: &ShownRun, b: &ShownRun| Arc::ptr_eq(&a.run, &b.run);
         let new_run = match (&self.shown.run, &shown.run) {
             (Some(old), Some(new)) => !same(old, new),
@@ -92,7 +92,7 @@ impl View {
         self.shown = shown;
         if new_run {
             let seeds = self.shown.run.iter().flat_map(|shown| &shown.run.seeds);
-            self.seed = seeds.map(|seed| seed.learned.seed).position(|now| Some(now) == seed).unwrap_or(0);
+            self.seed = seeds.map(|seed| seed.seed).position(|now| Some(now) == seed).unwrap_or(0);
             self.choose(self.wanted);
         }
     }

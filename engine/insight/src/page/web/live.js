@@ -10,10 +10,12 @@ class Live {
   }
 
   connect() {
-    const socket = new WebSocket(`ws://${location.host}/live?token=${encodeURIComponent(this.token)}`);
-    socket.addEventListener('open', () => { this.wait = 500; this.handlers.connected(true); });
-    socket.addEventListener('message', (event) => this.handlers.message(JSON.parse(event.data)));
-    socket.addEventListener('close', () => {
+    const events = new EventSource(`/live?token=${encodeURIComponent(this.token)}`);
+    events.addEventListener('open', () => { this.wait = 500; this.handlers.connected(true); });
+    events.addEventListener('message', (event) => this.handlers.message(JSON.parse(event.data)));
+    events.addEventListener('error', () => {
+      // Left to itself it comes back only to a server that answered well.
+      events.close();
       this.handlers.connected(false);
       setTimeout(() => this.connect(), this.wait);
       this.wait = Math.min(this.wait * 2, 10000);
@@ -46,7 +48,7 @@ class Live {
       try {
         const shot = await this.get('/frame', question);
         if (shot) then(shot);
-      } catch { /* the server is gone; the socket says so */ }
+      } catch { /* the server is gone; the stream of events says so */ }
     }
     this.busy = false;
   }
