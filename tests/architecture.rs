@@ -7,6 +7,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("geometry", &[]),
     ("random", &[]),
     ("saved", &[]),
+    ("outcome", &[]),
     ("settings", &["geometry"]),
     ("diagnostic", &[]),
     ("world", &[]),
@@ -15,9 +16,10 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("state", &["sensors"]),
     ("learner", &["state"]),
     ("judge", &[]),
-    ("script", &["judge"]),
+    ("verdict", &["judge"]),
+    ("script", &["judge", "verdict"]),
     ("robot", &["world", "sensors"]),
-    ("experiment", &["world", "sensors", "filter", "state", "learner", "judge", "script", "robot"]),
+    ("experiment", &["world", "sensors", "filter", "state", "learner", "judge", "verdict", "script", "robot"]),
     ("store", &[]),
     ("lint", &[]),
     ("report", &[]),
@@ -25,7 +27,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("record", &[]),
     ("folder", &["store", "lint", "report", "page"]),
 ];
-const SHARED: &[&str] = &["geometry", "random", "saved", "settings", "diagnostic", "digest", "stats"];
+const SHARED: &[&str] = &["geometry", "random", "saved", "settings", "diagnostic", "digest", "outcome", "stats"];
 /// Libraries that only some rooms may know. Clocks, hash maps, sines of the platform and fused steps are in clippy.toml.
 const ONLY_IN: &[(&str, &[&str])] = &[
     ("rhai::", &["judge", "script"]),

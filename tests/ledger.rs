@@ -62,7 +62,7 @@ fn a_rule_that_reads_the_laser_names_the_beam_behind_it() {
             // "too close" asks for the nearest beam, "contact" for none, "wall lost" for beam 0.
             Some((0, _)) => {
                 assert_eq!(record.beam, Some(record.nearest_beam));
-                assert!(record.nearest_m <= 0.25 && record.recover);
+                assert!(record.nearest_m <= 0.25 && record.then.is_some());
                 named[0] += 1;
             }
             Some((2, _)) => {
@@ -115,7 +115,7 @@ fn a_test_is_played_back_as_learning_is() {
 fn going_to_a_step_forwards_or_back_shows_the_state_in_which_its_action_was_chosen() {
     let plan = plan("wall", 400);
     let ledger = recorded(&plan, 1);
-    let after_a_failure = ledger.records().position(|record| record.recover).unwrap() + 1;
+    let after_a_failure = ledger.records().position(|record| record.then.is_some()).unwrap() + 1;
     let mut playback = Playback::new(&plan, 1, Phase::Learning, &ledger).unwrap();
     let mut first = None;
     for step in [after_a_failure, 300, after_a_failure, 0] {

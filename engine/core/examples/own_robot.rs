@@ -185,7 +185,7 @@ fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
     println!(
         "{} steps learned and played again alike; {} failures while learning, {} in {} steps of the test",
         playback.done(),
-        learned.tally.failures,
+        learned.tally.endings().failures,
         tested.figures.failures,
         tested.figures.steps
     );

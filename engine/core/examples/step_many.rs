@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mut failures = 0;
         for _ in 0..STEPS {
             let step = cycle.step(random.below(plan.settings.actions.len() as u32) as usize)?;
-            if step.recover {
+            if step.then.is_some() {
                 failures += 1;
                 cycle.recover()?;
             }

@@ -42,6 +42,7 @@
 pub mod diagnostic;
 pub mod digest;
 pub mod geometry;
+pub mod outcome;
 pub mod random;
 pub mod saved;
 pub mod settings;
@@ -56,6 +57,8 @@ pub mod filter;
 pub mod state;
 
 pub mod judge;
+
+pub mod verdict;
 
 pub mod script;
 

@@ -24,6 +24,8 @@ pub enum Stream {
     Recovery = 5,
     /// The learner's choices in the frozen test.
     Test = 6,
+    /// The choices of a robot that knows nothing, in its test.
+    Untrained = 7,
 }
 
 /// One stream of random numbers.

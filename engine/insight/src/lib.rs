@@ -17,4 +17,5 @@ pub mod page;
 pub mod record;
 pub mod report;
 pub mod store;
+pub mod verdict_words;
 pub mod words;

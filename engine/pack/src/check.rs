@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use serde::Serialize;
 
 use super::author::Author;
-use super::evidence::{Proof, check_length, measure};
+use super::evidence::{check_length, measure};
 use super::{Pack, draft};
 use engine::diagnostic::Result;
 use engine::experiment::{Overrides, Progress};
@@ -63,16 +63,11 @@ pub fn check_pack(
     check_length(&runnable, author.seeds.len())?;
     let seeds: Vec<u64> = author.seeds.iter().copied().take(SEEDS).collect();
     let proofs = measure(&runnable, &seeds, 0, stop, report)?;
-    let good = proofs.iter().filter(|proof| is_good(proof)).count();
+    let good = proofs.iter().filter(|proof| proof.claim.success == Some(true)).count();
     if 2 * good <= proofs.len() {
-        find("evidence", format!("only {good} of {} seeds are good: engine run shows why", proofs.len()));
+        find("evidence", format!("only {good} of {} seeds are a success: engine run shows why", proofs.len()));
     }
     Ok(findings)
-}
-
-/// Whether a seed learned and gets along; a combination learns nothing and must only get along.
-fn is_good(proof: &Proof) -> bool {
-    (proof.policy.is_none() || proof.claim.learned_at.is_some()) && proof.claim.does_task != Some(false)
 }
 
 fn is_spdx(word: &str) -> bool {

@@ -12,6 +12,14 @@ use engine::experiment::{
 };
 use engine::learner::Policy;
 
+/// The present definition of the figures. By the first one, a robot made laps from anywhere in the world, was lost in a
+/// restart, and had learned by its rewards alone; of such evidence only what both definitions have in common is compared.
+const FIGURES: u32 = 2;
+
+fn first_figures() -> u32 {
+    1
+}
+
 /// The claims of a pack.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -20,6 +28,9 @@ pub struct Evidence {
     pub engine: String,
     /// What that engine does in a short run of its own: [`fingerprint`].
     pub behaves: Digest,
+    /// Which definition the figures have: see [`FIGURES`].
+    #[serde(default = "first_figures")]
+    pub figures: u32,
     /// Steps of learning of each seed; 0 for a behaviour that combines policies.
     pub steps: u64,
     /// Steps of each test.
@@ -58,7 +69,13 @@ pub struct SeedClaim {
     pub mean_speed: f64,
     /// Share of the test's spells that were spent spinning.
     pub spinning: f64,
-    /// Whether it gets along its route; absent without a route.
+    /// Whether it is a success; absent where that cannot be told.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub success: Option<bool>,
+    /// Failures in 1,000 steps of a robot that knows nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub untrained_failures_per_1000: Option<f64>,
+    /// Of evidence by the first definition: whether it gets along its route.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub does_task: Option<bool>,
     /// Reinforcement of every 400 steps of learning.
@@ -147,6 +164,7 @@ fn proof(plan: &Plan, seed: u64, stop: &AtomicBool, report: &(dyn Fn(Progress) +
 
 fn claim(summary: Summary, tested: &TestRun) -> SeedClaim {
     let Summary { seed, state_hash, states_seen, learned_at, reinforcement_per_400, test: figures, .. } = summary;
+    let (success, untrained) = (summary.verdict.success, summary.untrained.failures_per_1000);
     SeedClaim {
         seed,
         state_hash,
@@ -158,8 +176,22 @@ fn claim(summary: Summary, tested: &TestRun) -> SeedClaim {
         contacts: figures.contacts,
         mean_speed: figures.mean_speed,
         spinning: figures.spinning,
-        does_task: figures.does_task,
+        success,
+        untrained_failures_per_1000: Some(untrained),
+        does_task: None,
         reinforcement_per_400,
+    }
+}
+
+impl SeedClaim {
+    /// Takes over what an older definition of the figures means by other numbers.
+    fn take_figures_of(&mut self, older: &Self) {
+        self.learned_at = older.learned_at;
+        self.failures_per_1000 = older.failures_per_1000;
+        self.laps = older.laps;
+        self.success = older.success;
+        self.untrained_failures_per_1000 = older.untrained_failures_per_1000;
+        self.does_task = older.does_task;
     }
 }
 
@@ -170,14 +202,15 @@ impl Evidence {
     /// Never in practice: only if the engine's own probe fails.
     pub fn new(runnable: &Runnable, proofs: &[Proof]) -> Result<Self> {
         let [steps, test_steps] = steps_of_seed(runnable);
-        // Of the seeds that do their task and fail least, the first: a user tests the best that was measured.
-        let idle = |proof: &Proof| proof.claim.does_task == Some(false);
+        // Of the seeds that are a success and fail least, the first: a user tests the best that was measured.
+        let idle = |proof: &Proof| proof.claim.success != Some(true);
         let failures = |proof: &Proof| proof.claim.failures_per_1000;
         let learned = proofs.iter().filter(|proof| proof.policy.is_some());
         let best = learned.min_by(|a, b| idle(a).cmp(&idle(b)).then(failures(a).total_cmp(&failures(b))));
         Ok(Self {
             engine: env!("CARGO_PKG_VERSION").to_owned(),
             behaves: fingerprint()?,
+            figures: FIGURES,
             steps,
             test_steps,
             policy_seed: best.map(|proof| proof.claim.seed),
@@ -207,7 +240,10 @@ pub fn replay(
         return malformed("E-PACK-EVIDENCE", format!("{} carries no evidence to replay", pack.title())).fail();
     };
     let seeds: Vec<u64> = evidence.seeds.iter().map(|claim| claim.seed).collect();
-    let proofs = measure(runnable, &seeds, 0, stop, report)?;
+    let mut proofs = measure(runnable, &seeds, 0, stop, report)?;
+    if evidence.figures < FIGURES {
+        proofs.iter_mut().zip(&evidence.seeds).for_each(|(proof, claim)| proof.claim.take_figures_of(claim));
+    }
     let steps = pack.file(STEPS).and_then(|bytes| std::str::from_utf8(bytes).ok()).unwrap_or_default();
     let mut differences: Vec<Difference> =
         evidence.seeds.iter().zip(&proofs).filter_map(|(claim, proof)| difference(claim, proof, steps)).collect();

@@ -161,14 +161,19 @@ fn curve(evidence: &Evidence) -> Markup {
 
 fn figures(evidence: &Evidence) -> Markup {
     let learned = evidence.seeds.iter().filter(|claim| claim.learned_at.is_some()).count();
+    let successes = evidence.seeds.iter().filter(|claim| claim.success == Some(true)).count();
     let Some(claim) = evidence.shown() else { return Markup::default() };
     let SeedClaim { seed, failures_per_1000, laps, contacts, mean_speed, .. } = claim;
     let mut rows = Vec::new();
+    if evidence.seeds.iter().any(|claim| claim.success.is_some()) {
+        rows.push(("seeds that are a success", format!("{successes} of {}", evidence.seeds.len())));
+    }
     if evidence.steps > 0 {
         rows.push(("seeds that learned", format!("{learned} of {}", evidence.seeds.len())));
         rows.push(("learned at step", claim.learned_at.map_or("never".to_owned(), |step| step.to_string())));
     }
     rows.push(("failures in 1000 steps", format!("{failures_per_1000:.1}")));
+    rows.extend(claim.untrained_failures_per_1000.map(|untrained| ("untrained", format!("{untrained:.1}"))));
     rows.push(("contacts", contacts.to_string()));
     rows.extend(laps.map(|laps| ("laps", format!("{laps:.1}"))));
     rows.push(("mean speed", format!("{mean_speed:.2} m/s")));

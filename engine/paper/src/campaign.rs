@@ -9,10 +9,11 @@ use super::job::{Learn, Trial};
 use super::looks::{Look, Seen, Watcher};
 use engine::diagnostic::Result;
 use engine::experiment::{
-    Overrides, Plan, RunLog, Summary, TestFigures, TestRun, Trail, WINDOW_STEPS, in_parallel, run_seed, test_and_watch,
+    Overrides, Plan, RunLog, Summary, TestRun, Trail, WINDOW_STEPS, in_parallel, run_seed, test_and_watch,
 };
 use engine::learner::Policy;
 use engine::script::Behaviour;
+use engine::verdict::TestFigures;
 
 /// Seeds, steps of learning and steps of a test in a quick check.
 const QUICK: (u64, u64, u64) = (2, 800, 200);

@@ -1,7 +1,8 @@
 //! What has to be learned and tested for a claim, as plain data. Equal jobs are done once.
 
 use super::looks::{Look, Seen};
-use engine::experiment::{Summary, TestFigures, WINDOW_STEPS};
+use engine::experiment::{Summary, WINDOW_STEPS};
+use engine::verdict::TestFigures;
 
 /// Learning one script under several seeds, each followed by the script's own test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

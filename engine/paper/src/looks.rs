@@ -125,17 +125,17 @@ impl Watcher {
                 if let Some(prey) = cycle.robot().prey() {
                     self.prey.follow(prey);
                 }
-                if step.recover {
+                if step.then.is_some() {
                     self.robot.jump();
                 }
             }
-            Look::Crossings => self.cross(pose, ranges, step.recover),
+            Look::Crossings => self.cross(pose, ranges, step.then.is_some()),
             Look::States => {
                 if let Some((frame, ranges)) = self.before {
                     let Step { state, action, next_state: next, .. } = *step;
                     self.visits.push(Visit { state, action, next, frame, ranges });
                 }
-                self.before = (!step.recover).then_some((step.index, ranges));
+                self.before = step.then.is_none().then_some((step.index, ranges));
             }
         }
     }

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 use super::board::WatchedSeed;
-use super::desk::{Desk, test_seed};
+use super::desk::{Desk, SeedTest, test_seed};
 use super::files::Files;
 use super::findings;
 use super::session::MOST_LEDGER_BYTES;
@@ -30,9 +30,9 @@ pub(super) fn retest(desk: &Desk, plan: Plan, stop: &AtomicBool, files: &Mutex<F
     desk.board.working(&format!("testing {} policies as one, {count}, {steps} steps each", plan.members.len()));
     let room = MOST_LEDGER_BYTES / (seeds.len() * RecordShape::of(&plan).bytes()).max(1) as u64;
     let tested = in_parallel(seeds, desk.settings.threads, |seed| {
-        let (run, tested) = test_seed(&plan, seed, None, room, stop)?;
-        let learning = Arc::new(Ledger::off());
-        Ok(WatchedSeed { seed, learned: None, learning, test: Some(run.figures), tested })
+        let SeedTest { run, untrained, kept } = test_seed(&plan, seed, None, room, stop)?;
+        let (learning, untrained) = (Arc::new(Ledger::off()), Some(untrained));
+        Ok(WatchedSeed { seed, learned: None, learning, test: Some(run.figures), untrained, tested: kept })
     })?;
     if stop.load(Ordering::Relaxed) {
         return Ok(());

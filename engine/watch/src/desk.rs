@@ -6,9 +6,10 @@ use std::sync::atomic::AtomicBool;
 
 use super::board::{Board, SavedRun, WatchedSeed};
 use engine::diagnostic::{Diagnostic, Result};
-use engine::experiment::{Decider, Learned, Ledger, Overrides, Plan, TestRun};
+use engine::experiment::{Decider, Learned, Ledger, Overrides, Plan, TestRun, test_untrained};
 use engine::filter::Catalogue;
 use engine::learner::Carry;
+use engine::verdict::TestFigures;
 use insight::page::{Document, Moments};
 
 /// Called with every run that was learned and tested, its tests, and the seconds that both took.
@@ -60,6 +61,13 @@ impl Desk {
     }
 }
 
+/// A test, with what a robot that knows nothing does in it, and the steps that were kept.
+pub(super) struct SeedTest {
+    pub run: TestRun,
+    pub untrained: TestFigures,
+    pub kept: Ledger,
+}
+
 /// Tests what a seed learned, or what the plan combines; so many steps of it are kept.
 pub(super) fn test_seed(
     plan: &Plan,
@@ -67,8 +75,8 @@ pub(super) fn test_seed(
     learned: Option<&Learned>,
     room: u64,
     stop: &AtomicBool,
-) -> Result<(TestRun, Ledger)> {
+) -> Result<SeedTest> {
     let mut kept = Ledger::new(plan, plan.settings.run.test_steps.min(room));
-    let tested = Decider::of(learned).test(plan, seed, stop, &mut kept)?;
-    Ok((tested, kept))
+    let run = Decider::of(learned).test(plan, seed, stop, &mut kept)?;
+    Ok(SeedTest { run, untrained: test_untrained(plan, seed, stop)?, kept })
 }

@@ -7,12 +7,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::board::{Board, SavedRun, WatchedSeed};
-use super::desk::{Desk, WatchSettings, test_seed};
+use super::desk::{Desk, SeedTest, WatchSettings, test_seed};
 use super::files::{Files, SETTLE};
 use super::session::Session;
 use super::{combined, findings};
 use engine::diagnostic::{Diagnostic, Result};
-use engine::experiment::{Ledger, Plan, TestRun, WINDOW_STEPS, in_parallel};
+use engine::experiment::{Plan, WINDOW_STEPS, in_parallel};
 
 /// A save is often several writes; so long it must be quiet.
 const QUIET: Duration = Duration::from_millis(15);
@@ -195,15 +195,21 @@ impl Relearner {
         if stop.load(Ordering::Relaxed) {
             return Ok(());
         }
-        let (tests, ledgers): (Vec<TestRun>, Vec<Ledger>) = tested.into_iter().unzip();
-        let seeds = run.seeds.iter().zip(&tests).zip(ledgers).map(|((seed, test), tested)| WatchedSeed {
-            seed: seed.seed,
-            learned: seed.learned.clone(),
-            learning: Arc::clone(&seed.learning),
-            test: Some(test.figures.clone()),
-            tested,
+        let mut tests = Vec::new();
+        let seeds = run.seeds.iter().zip(tested).map(|(seed, SeedTest { run: test, untrained, kept })| {
+            let figures = test.figures.clone();
+            tests.push(test);
+            WatchedSeed {
+                seed: seed.seed,
+                learned: seed.learned.clone(),
+                learning: Arc::clone(&seed.learning),
+                test: Some(figures),
+                untrained: Some(untrained),
+                tested: kept,
+            }
         });
-        let run = self.desk.show(run.plan.clone(), seeds.collect(), true, &format!("{text}, tested"), error)?;
+        let seeds = seeds.collect();
+        let run = self.desk.show(run.plan.clone(), seeds, true, &format!("{text}, tested"), error)?;
         session.end();
         if let Some(finished) = &self.desk.settings.finished {
             finished(&run, tests, started.elapsed().as_secs_f64())?;
@@ -212,7 +218,7 @@ impl Relearner {
         Ok(())
     }
 
-    fn test(&self, run: &SavedRun, room: u64, stop: &AtomicBool) -> Result<Vec<(TestRun, Ledger)>> {
+    fn test(&self, run: &SavedRun, room: u64, stop: &AtomicBool) -> Result<Vec<SeedTest>> {
         let indices: Vec<u64> = (0..run.seeds.len() as u64).collect();
         in_parallel(&indices, self.desk.settings.threads, |index| {
             let watched = &run.seeds[index as usize];

@@ -135,7 +135,14 @@ impl Session {
                 return Err(Box::new(fault.clone()));
             }
             let (seed, learning) = (learned.seed, Arc::clone(&pupil.ledger));
-            Ok(WatchedSeed { seed, learned: Some(Arc::new(learned)), learning, test: None, tested: Ledger::off() })
+            Ok(WatchedSeed {
+                seed,
+                learned: Some(Arc::new(learned)),
+                learning,
+                test: None,
+                untrained: None,
+                tested: Ledger::off(),
+            })
         };
         self.pupils.iter().map(|pupil| seed(&mut lock(pupil))).collect()
     }

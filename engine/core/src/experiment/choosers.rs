@@ -2,7 +2,7 @@
 
 use super::{Choice, Chooser, Disagreements, Step};
 use crate::diagnostic::Result;
-use crate::learner::{Combined, Ending, Learner, Policy, Softmax, Transition};
+use crate::learner::{Combined, Learner, Policy, Softmax, Transition};
 use crate::random::Random;
 
 /// A learner that learns from every step.
@@ -20,7 +20,7 @@ impl<L: Learner + ?Sized> Chooser for Learns<'_, L> {
             action: step.action,
             reward: step.reward,
             next_state: step.next_state,
-            ending: Ending::of(step.recover, step.reward),
+            ending: step.ending(),
             potential: step.potential,
             next_potential: step.next_potential,
         });

@@ -149,7 +149,7 @@ impl<R: Robot> Cycle<R> {
             next_state: self.state(),
             potential,
             next_potential: self.potential,
-            recover: verdict.recover,
+            then: verdict.then,
             contact: self.observation.contact,
         })
     }

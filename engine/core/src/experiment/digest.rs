@@ -20,7 +20,7 @@ impl StateHash {
         let mut record = [0_u8; 48];
         let fields = [
             (step.state as u64).to_le_bytes(),
-            (step.action as u64 | u64::from(step.recover) << 32).to_le_bytes(),
+            (step.action as u64 | u64::from(step.then.is_some()) << 32).to_le_bytes(),
             step.reward.to_le_bytes(),
             pose.x_m.to_le_bytes(),
             pose.y_m.to_le_bytes(),

@@ -58,7 +58,7 @@ pub fn drive<R: Robot>(
 ) -> Result<u64> {
     for done in 0..steps {
         let (step, flow) = advance(cycle, chooser, observer)?;
-        if step.recover {
+        if step.then.is_some() {
             recover(cycle, chooser, observer)?;
         }
         if flow.is_break() {

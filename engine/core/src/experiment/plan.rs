@@ -14,6 +14,7 @@ use crate::robot::SimulatedRobot;
 use crate::script::{Behaviour, Draft, Unread};
 use crate::settings::{SETTINGS, Settings, Value, apply};
 use crate::state::{Grid, GridMap, StateMap};
+use crate::verdict::Success;
 use crate::world::Layout;
 
 /// What the command line changes.
@@ -150,6 +151,9 @@ impl Plan {
             let height_m = plan.layout.level_height_m(&plan.settings.robot.body);
             plan.behaviour.find_unreachable(&plan.settings.laser, height_m, &mut mistakes);
         }
+        if plan.layout.lap.is_none() {
+            plan.behaviour.find_unmeasurable(&mut mistakes);
+        }
         let robot = ["camera", "laser", "movers", "recovery", "robot", "run"];
         if !robot.iter().any(|call| unread.any_of(call))
             && mistakes.take(SimulatedRobot::new(&plan.layout, &plan.settings, 0)).is_some()
@@ -222,6 +226,13 @@ impl Plan {
     #[must_use]
     pub fn learns(&self) -> bool {
         self.settings.policies.is_empty()
+    }
+
+    /// What is called success.
+    #[must_use]
+    pub fn success(&self) -> Success {
+        let run = &self.settings.run;
+        self.behaviour.success(self.layout.lap.is_some(), run.test_steps as f64 * run.period_s)
     }
 
     /// The plan with the policies that its script combines.

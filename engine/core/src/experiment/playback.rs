@@ -156,7 +156,7 @@ impl<'a, R: Robot> Playback<'a, R> {
         let mut recorded = Recorded(Choice { action, explored: record.explored });
         let (step, _) = advance(&mut self.cycle, &mut recorded, &mut self.played)?;
         self.done += 1;
-        self.must_recover = step.recover;
+        self.must_recover = step.then.is_some();
         Ok(Some(step))
     }
 

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::{Plan, Playback};
 use crate::diagnostic::Result;
 use crate::judge::{FactRead, Judge, PartRead, RuleText};
+use crate::outcome::Ending;
 
 /// One step with its reasons.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -25,8 +26,10 @@ pub struct StepReasons {
     pub explored: bool,
     /// The sum of what the rules added.
     pub reward: f64,
-    /// Whether the script asked for recovery.
+    /// Whether the step ended the attempt.
     pub recover: bool,
+    /// How: `failure`, `goal` or `restart`; null if it did not.
+    pub ending: Option<&'static str>,
     /// Whether the body touched something.
     pub contact: bool,
     /// Whether the robot lost its footing.
@@ -109,7 +112,7 @@ impl StepReasons {
             index: state,
             cells: cycle.state_map().describe(state).cells.map_or_else(Vec::new, |cells| cells.filled),
         };
-        let stopped_by = cycle.fired().iter().rposition(Option::is_some).filter(|_| step.recover);
+        let stopped_by = cycle.fired().iter().rposition(Option::is_some).filter(|_| step.then.is_some());
         let rules = plan.behaviour.rules().iter().enumerate();
         let rules = rules.map(|(rule, text)| RuleReasons {
             added: cycle.fired()[rule],
@@ -126,7 +129,8 @@ impl StepReasons {
             motion: [twist.linear_m_per_s, twist.angular_rad_per_s],
             explored: record.explored,
             reward: step.reward,
-            recover: step.recover,
+            recover: step.then.is_some(),
+            ending: step.ending().map(Ending::word),
             contact: step.contact,
             fallen: record.fallen,
             pose: [pose.x_m, pose.y_m, pose.yaw_rad],

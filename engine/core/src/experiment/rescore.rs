@@ -11,7 +11,8 @@ use std::sync::Arc;
 use super::legs::first_fixed_difference;
 use super::{Ledger, Phase, Plan, Playback};
 use crate::diagnostic::{Diagnostic, Result, printable};
-use crate::learner::{Ending, Learner, Policy, Transition, shipped_learner};
+use crate::learner::{Learner, Policy, Transition, shipped_learner};
+use crate::outcome::Then;
 use crate::script::Behaviour;
 use crate::settings::{LearnerKind, SETTINGS, apply};
 
@@ -19,7 +20,7 @@ use crate::settings::{LearnerKind, SETTINGS, apply};
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Judged {
     reward: f64,
-    recover: bool,
+    then: Option<Then>,
     /// The robot was put elsewhere after this step, because the recorded run asked for it.
     moved: bool,
 }
@@ -139,7 +140,7 @@ pub fn rescore(plan: &Plan, new: &Plan, seed: u64, ledger: &Ledger, passes: u64)
     while let Some(step) = playback.advance()? {
         judge.facts_mut().clone_from(playback.cycle().facts());
         let verdict = judge.judge()?;
-        if step.recover || verdict.recover {
+        if step.then.is_some() || verdict.then.is_some() {
             judge.recovered();
         }
         for (scores, fired) in scores.iter_mut().zip([playback.cycle().fired(), judge.fired()]) {
@@ -148,9 +149,9 @@ pub fn rescore(plan: &Plan, new: &Plan, seed: u64, ledger: &Ledger, passes: u64)
                 score.total += value.unwrap_or(0.0);
             }
         }
-        let moved = step.recover;
-        judged[0].push(Judged { reward: step.reward, recover: step.recover, moved });
-        judged[1].push(Judged { reward: verdict.reward, recover: verdict.recover, moved });
+        let moved = step.then.is_some();
+        judged[0].push(Judged { reward: step.reward, then: step.then, moved });
+        judged[1].push(Judged { reward: verdict.reward, then: verdict.then, moved });
     }
     let [before, after] = judged;
     let pairs = || before.iter().zip(&after);
@@ -161,8 +162,8 @@ pub fn rescore(plan: &Plan, new: &Plan, seed: u64, ledger: &Ledger, passes: u64)
         reward_before: sum(&before),
         reward_after: sum(&after),
         steps_changed: count(|(old, new)| old.reward != new.reward),
-        new_recoveries: count(|(old, new)| !old.recover && new.recover),
-        old_recoveries: count(|(old, new)| old.recover && !new.recover),
+        new_recoveries: count(|(old, new)| old.then.is_none() && new.then.is_some()),
+        old_recoveries: count(|(old, new)| old.then.is_some() && new.then.is_none()),
         policy_before: learn_along(plan, seed, ledger, &before, passes)?,
         policy_after: learn_along(new, seed, ledger, &after, passes)?,
         tries: tries(plan, ledger)?,
@@ -201,12 +202,12 @@ fn learn_along(plan: &Plan, seed: u64, ledger: &Ledger, judged: &[Judged], passe
                 action: usize::from(record.action),
                 reward: judged.reward,
                 next_state: record.next_state as usize,
-                ending: Ending::of(judged.recover, judged.reward),
+                ending: judged.then.map(|then| then.ending(judged.reward)),
                 potential: 0.0,
                 next_potential: 0.0,
             });
             // What follows does not follow from this step if the robot was put elsewhere.
-            if judged.recover || judged.moved {
+            if judged.then.is_some() || judged.moved {
                 learner.forget();
             }
         }

@@ -2,7 +2,8 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::{BrokenOff, Decider, Learned, Plan, Progress, RunLog, Summary, TestRun, learn_into};
+use super::{BrokenOff, Decider, Learned, Plan, Progress, RunLog, Summary, TestRun, learn_into, test_untrained};
+use crate::verdict::TestFigures;
 
 /// What one seed leaves.
 #[derive(Debug, Clone)]
@@ -32,14 +33,25 @@ pub fn run_seed(
         Ok(tested) => tested,
         Err(error) => return Err(Box::new(BrokenOff { error, learned })),
     };
-    Ok(SeedRun::new(plan, seed, learned, tested, log))
+    match test_untrained(plan, seed, stop) {
+        Ok(untrained) => Ok(SeedRun::new(plan, seed, learned, tested, &untrained, log)),
+        Err(error) => Err(Box::new(BrokenOff { error, learned })),
+    }
 }
 
 impl SeedRun {
-    /// What was learned and tested elsewhere, a piece at a time, with the steps that were kept of it.
+    /// What was learned and tested elsewhere, a piece at a time, with the test of a robot that knows nothing and the steps that
+    /// were kept.
     #[must_use]
-    pub fn new(plan: &Plan, seed: u64, learned: Option<Learned>, tested: TestRun, log: &RunLog) -> Self {
-        let mut summary = Summary::new(plan, seed, learned.as_ref(), &tested);
+    pub fn new(
+        plan: &Plan,
+        seed: u64,
+        learned: Option<Learned>,
+        tested: TestRun,
+        untrained: &TestFigures,
+        log: &RunLog,
+    ) -> Self {
+        let mut summary = Summary::new(plan, seed, learned.as_ref(), &tested, untrained);
         summary.log_sha256 = log.is_kept().then(|| log.sha256());
         Self { learned, tested, summary }
     }

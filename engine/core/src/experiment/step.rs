@@ -1,5 +1,7 @@
 //! What one step led to.
 
+use crate::outcome::{Ending, Then};
+
 /// One step, from the choice of an action to what the script says of it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Step {
@@ -19,22 +21,16 @@ pub struct Step {
     pub potential: f64,
     /// What they have built up after it, before any recovery.
     pub next_potential: f64,
-    /// Whether the script asks for recovery.
-    pub recover: bool,
+    /// What the script says if the attempt ends here: the robot is put somewhere else.
+    pub then: Option<Then>,
     /// Whether the body touched something.
     pub contact: bool,
 }
 
 impl Step {
-    /// Whether it ended badly: the script asks for recovery and rewards nothing.
+    /// How the attempt ended, if it did.
     #[must_use]
-    pub fn failed(&self) -> bool {
-        self.recover && self.reward <= 0.0
-    }
-
-    /// Whether it reached what the script wants: recovery after a reward above 0.
-    #[must_use]
-    pub fn reached(&self) -> bool {
-        self.recover && self.reward > 0.0
+    pub fn ending(&self) -> Option<Ending> {
+        self.then.map(|then| then.ending(self.reward))
     }
 }

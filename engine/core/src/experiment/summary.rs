@@ -2,18 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::truth::{Spells, Truth};
-use super::{CombinationFigures, Learned, Plan, Tally, TestRun, WINDOW_STEPS};
+use super::{CombinationFigures, Learned, Plan, Tally, TestRun};
 use crate::stats::Sorted;
-
-/// Reinforcement of a window from which it counts as learned.
-const GOOD_WINDOW: f64 = -1.0;
-/// How many such windows in a row are asked for.
-const GOOD_WINDOWS: usize = 4;
-/// A policy does its task if it makes this much of 0.2 m/s net along the route.
-const TASK_SPEED_M_PER_S: f64 = 0.5 * 0.2;
-/// A combination is good up to so many failures in 1,000 steps of its test.
-const FEW_FAILURES: f64 = 10.0;
+use crate::verdict::{ConditionVerdict, FigureVerdict, RuleTotal, TestFigures, Verdict};
 
 /// One seed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -28,7 +19,8 @@ pub struct Summary {
     pub steps: u64,
     /// Steps of learning and testing for each second of wall clock.
     pub steps_per_second: f64,
-    /// The first step from which four windows of 400 steps each have a reinforcement of -1 or better.
+    /// The first step from which four windows of 400 steps in a row are good, see [`crate::verdict::Success::learned_at`]; null
+    /// if there is none, or if it cannot be told from this script.
     pub learned_at: Option<u64>,
     /// Sum of the rewards of each window of 400 steps.
     pub reinforcement_per_400: Vec<f64>,
@@ -36,8 +28,12 @@ pub struct Summary {
     pub rules: Vec<RuleTotal>,
     /// How many states were visited; of a combination, how many its policies know.
     pub states_seen: usize,
+    /// Whether it is a success, and why.
+    pub verdict: Verdict,
     /// The frozen policy's test.
     pub test: TestFigures,
+    /// The test of a robot that knows nothing: of 2,000 steps at most.
+    pub untrained: TestFigures,
     /// SHA-256 over every step of learning and the learned table.
     pub state_hash: String,
     /// SHA-256 over the records of the log, as its last digest; absent if none was kept.
@@ -51,103 +47,23 @@ pub struct Summary {
     pub combination: Option<CombinationFigures>,
 }
 
-/// What one rule did.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct RuleTotal {
-    /// The rule's name.
-    pub name: String,
-    /// How often it fired.
-    pub fired: u64,
-    /// Sum of what it added.
-    pub total: f64,
-}
-
-/// The frozen policy, judged by the script and by the truth.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct TestFigures {
-    /// Steps of the test.
-    pub steps: u64,
-    /// Steps in which the script asked for recovery without a reward.
-    pub failures: u64,
-    /// Steps in which it asked for recovery after a reward above 0: goals reached.
-    pub goals: u64,
-    /// Failures for 1,000 steps.
-    pub failures_per_1000: f64,
-    /// Sum of the rewards for 1,000 steps.
-    pub reinforcement_per_1000: f64,
-    /// Length of the path, metres.
-    pub distance_m: f64,
-    /// Signed progress along the world's lap route, metres; null without one.
-    pub net_route_m: Option<f64>,
-    /// That progress in lengths of the route.
-    pub laps: Option<f64>,
-    /// Steps in which the body touched something.
-    pub contacts: u64,
-    /// Path length over time, m/s.
-    pub mean_speed: f64,
-    /// Share of spells of 20 s with a full turn on a radius below 0.3 m.
-    pub spinning: f64,
-    /// Share of spells with less than 0.2 m of path.
-    pub standing: f64,
-    /// Share of spells that went round in a circle.
-    pub circling: f64,
-    /// Share of spells with backward progress along the route; null without one.
-    pub backwards: Option<f64>,
-    /// Median distance between the robot and the prey, metres, centre to centre; null without one.
-    pub prey_distance_m: Option<f64>,
-    /// Whether the robot does more than avoid punishment: half of 0.2 m/s net along the route, in either direction; null
-    /// without a route.
-    pub does_task: Option<bool>,
-}
-
-impl TestFigures {
-    /// What was counted, and what the truth says; a robot that does not know where it is has gone nowhere.
-    pub(super) fn new(plan: &Plan, steps: u64, tally: &Tally, truth: Option<&Truth>) -> Self {
-        let seconds = (steps as f64 * plan.settings.run.period_s).max(f64::MIN_POSITIVE);
-        let lap_m = plan.layout.lap.map(|lap| plan.layout.routes[lap].length_m());
-        let per_1000 = |count: f64| count * 1000.0 / steps.max(1) as f64;
-        let spells = truth.map_or_else(Spells::default, |truth| truth.spells);
-        let share = |count: u64| count as f64 / spells.all.max(1) as f64;
-        let net_route_m = truth.and_then(Truth::net_m);
-        let distance_m = truth.map_or(0.0, |truth| truth.distance_m);
-        let prey_m = truth.map_or(&[][..], |truth| &truth.prey_m);
-        Self {
-            steps,
-            failures: tally.failures,
-            goals: tally.goals,
-            failures_per_1000: per_1000(tally.failures as f64),
-            reinforcement_per_1000: per_1000(tally.curve().iter().sum()),
-            distance_m,
-            net_route_m,
-            laps: net_route_m.zip(lap_m).map(|(net_m, lap_m)| net_m / lap_m),
-            contacts: tally.contacts,
-            mean_speed: distance_m / seconds,
-            spinning: share(spells.spinning),
-            standing: share(spells.standing),
-            circling: share(spells.circling),
-            backwards: net_route_m.map(|_| share(spells.backwards)),
-            prey_distance_m: prey_m.iter().map(|distance| f64::from(*distance)).collect::<Sorted>().upper_median(),
-            does_task: net_route_m.map(|net_m| net_m.abs() / seconds >= TASK_SPEED_M_PER_S),
-        }
-    }
-}
-
 impl Summary {
     /// The figures of one seed; nothing was learned by a behaviour that combines policies. The log's digest and how long
     /// it took are not known here.
     #[must_use]
-    pub fn new(plan: &Plan, seed: u64, learned: Option<&Learned>, tested: &TestRun) -> Self {
+    pub fn new(plan: &Plan, seed: u64, learned: Option<&Learned>, tested: &TestRun, untrained: &TestFigures) -> Self {
         let test = tested.figures.clone();
         let curve = learned.map_or_else(Vec::new, |learned| learned.tally.curve());
         let steps = learned.map_or(0, |learned| learned.steps);
-        let (wanted, whole) = (if plan.learns() { plan.learning_steps() } else { 0 }, (steps / WINDOW_STEPS) as usize);
+        let wanted = if plan.learns() { plan.learning_steps() } else { 0 };
+        let success = plan.success();
         Self {
             behaviour: plan.behaviour.name().to_owned(),
             world: plan.layout.name.clone(),
             seed,
             steps,
             steps_per_second: 0.0,
-            learned_at: learned_at(&curve[..whole]),
+            learned_at: learned.and_then(|learned| success.learned_at(&learned.tally.counts())),
             reinforcement_per_400: curve,
             rules: rule_totals(plan, learned.map_or(&tested.tally, |learned| &learned.tally)),
             states_seen: learned.map_or_else(
@@ -157,6 +73,8 @@ impl Summary {
             interrupted: steps < wanted || test.steps < plan.settings.run.test_steps,
             state_hash: learned.map_or(&tested.state_hash, |learned| &learned.state_hash).clone(),
             log_sha256: None,
+            verdict: success.verdict(&test, untrained),
+            untrained: untrained.clone(),
             combination: tested.combination.as_ref().map(|combination| combination.figures.clone()),
             test,
         }
@@ -168,21 +86,10 @@ impl Summary {
         self.steps_per_second = ((self.steps + self.test.steps) as f64 / seconds.max(1e-9)).round();
         self
     }
-
-    /// Whether it was learned and, in a world with a route, gets along it. A combination learns nothing: instead, it must
-    /// fail at most 10 times in 1,000 steps of its test.
-    #[must_use]
-    pub fn is_good(&self) -> bool {
-        let fails_little = match self.combination {
-            Some(_) => self.test.failures_per_1000 <= FEW_FAILURES,
-            None => self.learned_at.is_some(),
-        };
-        fails_little && self.test.does_task != Some(false)
-    }
 }
 
 /// What is counted has no column for a rule that only earlier legs had, unless it was counted in these legs.
-fn rule_totals(plan: &Plan, tally: &Tally) -> Vec<RuleTotal> {
+pub(super) fn rule_totals(plan: &Plan, tally: &Tally) -> Vec<RuleTotal> {
     let total = |(index, (name, fired)): (usize, (String, &u64))| RuleTotal {
         name,
         fired: *fired,
@@ -198,14 +105,48 @@ pub struct Spread {
     pub behaviour: String,
     /// Name of the world.
     pub world: String,
-    /// How many seeds learned; of a combination, how many are good.
+    /// How many seeds learned: have a `learned_at`.
     pub converged: usize,
+    /// How many seeds are a success.
+    pub successes: usize,
+    /// The conditions of success.
+    pub conditions: Vec<ConditionSpread>,
     /// The median seed's figures, each taken on its own.
     pub median: Figures,
     /// The worst seed's figures, each taken on its own.
     pub worst: Figures,
     /// Every seed.
     pub seeds: Vec<Summary>,
+}
+
+/// One condition of success over many seeds.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ConditionSpread {
+    /// Its name.
+    pub name: String,
+    /// What must hold.
+    pub condition: String,
+    /// In how many seeds it holds.
+    pub held: usize,
+    /// In how many it holds of a robot that knows nothing.
+    pub untrained: usize,
+    /// The figures that it reads.
+    pub figures: Vec<FigureSpread>,
+}
+
+/// One figure of a condition over many seeds; null where a seed's test does not have it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FigureSpread {
+    /// Its name.
+    pub name: String,
+    /// The upper median.
+    pub median: Option<f64>,
+    /// The least.
+    pub least: Option<f64>,
+    /// The greatest.
+    pub greatest: Option<f64>,
+    /// The upper median of robots that know nothing.
+    pub untrained: Option<f64>,
 }
 
 /// The figures that a spread is told by.
@@ -215,6 +156,8 @@ pub struct Figures {
     pub learned_at: Option<u64>,
     /// Failures in 1,000 steps of the test.
     pub failures_per_1000: f64,
+    /// Goals as a share of the attempts of the test; null where no seed reached one.
+    pub goals_share: Option<f64>,
     /// Laps of the test, in whichever direction; null without a route.
     pub laps: Option<f64>,
     /// Median distance to the prey, metres; null without one.
@@ -240,6 +183,10 @@ impl Spread {
             Figures {
                 learned_at: learned_at.is_finite().then_some(learned_at as u64),
                 failures_per_1000: pick(true, &|seed| seed.test.failures_per_1000),
+                goals_share: seeds
+                    .iter()
+                    .any(|seed| seed.test.goals > 0)
+                    .then(|| pick(false, &|seed| seed.test.goal_rate)),
                 laps: (!laps.is_nan()).then_some(laps),
                 prey_distance_m: (!prey.is_nan()).then_some(prey),
                 contacts: pick(true, &|seed| seed.test.contacts as f64),
@@ -250,29 +197,39 @@ impl Spread {
         let worst = figures(&|values, worst_is_high| values.upper_quantile(if worst_is_high { 1.0 } else { 0.0 }));
         let (behaviour, world) =
             seeds.first().map_or_else(Default::default, |seed| (seed.behaviour.clone(), seed.world.clone()));
-        let converged = seeds
-            .iter()
-            .filter(|seed| seed.learned_at.is_some() || (seed.combination.is_some() && seed.is_good()))
-            .count();
-        Self { behaviour, world, converged, median, worst, seeds }
+        let converged = seeds.iter().filter(|seed| seed.learned_at.is_some()).count();
+        let successes = seeds.iter().filter(|seed| seed.verdict.is_success()).count();
+        let conditions = conditions(&seeds);
+        Self { behaviour, world, converged, successes, conditions, median, worst, seeds }
     }
 }
 
-/// The first step from which four windows in a row have a reinforcement of -1 or better; only whole windows count.
-#[must_use]
-pub fn learned_at(curve: &[f64]) -> Option<u64> {
-    let good = |windows: &[f64]| windows.iter().all(|window| *window >= GOOD_WINDOW);
-    curve.windows(GOOD_WINDOWS).position(good).map(|index| index as u64 * WINDOW_STEPS)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn it_is_learned_at_the_start_of_four_good_windows() {
-        assert_eq!(learned_at(&[-12.0, -5.0, -1.0, 0.0, -1.0, 0.0, -3.0]), Some(800));
-        assert_eq!(learned_at(&[-12.0, -1.0, 0.0, -2.0, 0.0, -1.0]), None);
-        assert_eq!(learned_at(&[0.0, 0.0, 0.0]), None);
-    }
+/// The conditions, which are alike in all seeds of a run.
+fn conditions(seeds: &[Summary]) -> Vec<ConditionSpread> {
+    let of = |seed: &Summary, index: usize| seed.verdict.conditions.get(index).cloned();
+    let first = seeds.first().map_or(&[][..], |seed| &seed.verdict.conditions);
+    let spread = |(index, condition): (usize, &ConditionVerdict)| {
+        let all: Vec<ConditionVerdict> = seeds.iter().filter_map(|seed| of(seed, index)).collect();
+        let figure = |(at, figure): (usize, &FigureVerdict)| {
+            let values = |get: fn(&FigureVerdict) -> Option<f64>| -> Sorted {
+                all.iter().filter_map(|condition| get(condition.figures.get(at)?)).collect()
+            };
+            let own = values(|figure| figure.value);
+            FigureSpread {
+                name: figure.name.clone(),
+                median: own.upper_median(),
+                least: own.upper_quantile(0.0),
+                greatest: own.upper_quantile(1.0),
+                untrained: values(|figure| figure.untrained).upper_median(),
+            }
+        };
+        ConditionSpread {
+            name: condition.name.clone(),
+            condition: condition.condition.clone(),
+            held: all.iter().filter(|condition| condition.holds).count(),
+            untrained: all.iter().filter(|condition| condition.untrained).count(),
+            figures: condition.figures.iter().enumerate().map(figure).collect(),
+        }
+    };
+    first.iter().enumerate().map(spread).collect()
 }

@@ -1,18 +1,8 @@
 //! What is counted while the robot learns: reinforcement for each window of steps, and for each rule.
 
 use super::Step;
-
-/// Steps in a window: each point of the paper's Figure 3 is the reinforcement of the last 400 steps.
-pub const WINDOW_STEPS: u64 = 400;
-
-/// One window.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Window {
-    /// Steps that it holds; fewer than 400 only in the last window of a run.
-    pub steps: u64,
-    /// Sum of the rewards.
-    pub reinforcement: f64,
-}
+use crate::outcome::Endings;
+use crate::verdict::{Counts, WINDOW_STEPS, Window};
 
 /// Counts over a whole run.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,14 +11,9 @@ pub struct Tally {
     pub windows: Vec<Window>,
     /// By rule: how often it fired.
     pub fired: Vec<u64>,
-    /// Steps that asked for recovery without a reward.
-    pub failures: u64,
-    /// Steps that asked for recovery after a reward: goals reached.
-    pub goals: u64,
-    /// Steps in which the body touched something.
-    pub contacts: u64,
-    /// By window, then by rule: sum of what the rule added.
+    /// By window, then by rule: sum of what the rule added, and how often it fired.
     by_rule: Vec<f64>,
+    fired_by_rule: Vec<u32>,
 }
 
 impl Tally {
@@ -36,27 +21,28 @@ impl Tally {
     #[must_use]
     pub fn new(rules: usize, steps: u64) -> Self {
         let windows = steps.div_ceil(WINDOW_STEPS).min(1 << 20) as usize;
-        let (windows, by_rule) = (Vec::with_capacity(windows), Vec::with_capacity(windows * rules));
-        Self { windows, fired: vec![0; rules], failures: 0, goals: 0, contacts: 0, by_rule }
+        let (by_rule, fired_by_rule) = (Vec::with_capacity(windows * rules), Vec::with_capacity(windows * rules));
+        Self { windows: Vec::with_capacity(windows), fired: vec![0; rules], by_rule, fired_by_rule }
     }
 
     /// Counts one step; true if it ended a window.
     pub fn count(&mut self, step: &Step, fired: &[Option<f64>]) -> bool {
         if self.windows.last().is_none_or(|window| window.steps == WINDOW_STEPS) {
-            self.windows.push(Window { steps: 0, reinforcement: 0.0 });
+            self.windows.push(Window::default());
             self.by_rule.resize(self.windows.len() * self.fired.len(), 0.0);
+            self.fired_by_rule.resize(self.windows.len() * self.fired.len(), 0);
         }
-        self.failures += u64::from(step.failed());
-        self.goals += u64::from(step.reached());
-        self.contacts += u64::from(step.contact);
         let Some(window) = self.windows.last_mut() else { return false };
         window.steps += 1;
         window.reinforcement += step.reward;
-        let sums = self.by_rule.len() - self.fired.len();
-        for ((count, sum), value) in self.fired.iter_mut().zip(&mut self.by_rule[sums..]).zip(fired) {
+        window.endings.count(step.ending());
+        window.contacts += u64::from(step.contact);
+        let from = self.by_rule.len() - self.fired.len();
+        for (rule, value) in fired.iter().enumerate() {
             if let Some(value) = value {
-                *count += 1;
-                *sum += value;
+                self.fired[rule] += 1;
+                self.by_rule[from + rule] += value;
+                self.fired_by_rule[from + rule] += 1;
             }
         }
         window.steps == WINDOW_STEPS
@@ -70,17 +56,17 @@ impl Tally {
         for (count, place) in self.fired.iter().zip(&places) {
             place.iter().for_each(|place| next.fired[*place] += count);
         }
-        for sums in self.by_rule.chunks(before.len().max(1)) {
+        let (sums, fired) = (self.by_rule.chunks(before.len().max(1)), self.fired_by_rule.chunks(before.len().max(1)));
+        for (sums, fired) in sums.zip(fired) {
             let from = next.by_rule.len();
             next.by_rule.resize(from + now.len(), 0.0);
-            for (sum, place) in sums.iter().zip(&places) {
+            next.fired_by_rule.resize(from + now.len(), 0);
+            for ((sum, fired), place) in sums.iter().zip(fired).zip(&places) {
                 place.iter().for_each(|place| next.by_rule[from + place] += sum);
+                place.iter().for_each(|place| next.fired_by_rule[from + place] += fired);
             }
         }
         next.windows.extend_from_slice(&self.windows);
-        next.failures = self.failures;
-        next.goals = self.goals;
-        next.contacts = self.contacts;
         *self = next;
     }
 
@@ -88,6 +74,31 @@ impl Tally {
     #[must_use]
     pub fn by_rule(&self, window: usize) -> &[f64] {
         &self.by_rule[window * self.fired.len()..(window + 1) * self.fired.len()]
+    }
+
+    /// By rule: how often it fired in one window.
+    #[must_use]
+    pub fn fired_in(&self, window: usize) -> &[u32] {
+        &self.fired_by_rule[window * self.fired.len()..(window + 1) * self.fired.len()]
+    }
+
+    /// Every window, with how often each rule fired in it.
+    #[must_use]
+    pub fn counts(&self) -> Vec<Counts<'_>> {
+        let windows = self.windows.iter().enumerate();
+        windows.map(|(index, window)| Counts { window: *window, fired: self.fired_in(index) }).collect()
+    }
+
+    /// How attempts ended, over the whole run.
+    #[must_use]
+    pub fn endings(&self) -> Endings {
+        self.windows.iter().map(|window| window.endings).sum()
+    }
+
+    /// Steps in which the body touched something.
+    #[must_use]
+    pub fn contacts(&self) -> u64 {
+        self.windows.iter().map(|window| window.contacts).sum()
     }
 
     /// Reinforcement of each window, first to last.
@@ -100,11 +111,17 @@ impl Tally {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::outcome::Then;
 
     #[test]
     fn a_window_holds_400_steps_and_sums_by_rule() {
         let mut tally = Tally::new(2, 401);
-        let step = |reward, failed| Step { reward, recover: failed, contact: failed, ..Step::default() };
+        let step = |reward, failed: bool| Step {
+            reward,
+            then: failed.then_some(Then::Recover),
+            contact: failed,
+            ..Step::default()
+        };
         for index in 0..401 {
             let failed = index % 100 == 0;
             let fired = [failed.then_some(-1.0), None];
@@ -112,20 +129,24 @@ mod tests {
             assert_eq!(ended, index == 399);
         }
         assert_eq!(tally.curve(), [-4.0, -1.0]);
-        assert_eq!((tally.fired.as_slice(), tally.failures, tally.contacts), (&[5, 0][..], 5, 5));
-        assert_eq!(tally.by_rule(0), [-4.0, 0.0]);
+        assert_eq!((tally.fired.as_slice(), tally.endings().failures, tally.contacts()), (&[5, 0][..], 5, 5));
+        assert_eq!(
+            (tally.by_rule(0), tally.fired_in(0), tally.fired_in(1)),
+            (&[-4.0, 0.0][..], &[4, 0][..], &[1, 0][..])
+        );
     }
 
     #[test]
     fn swapped_rules_keep_the_counts_of_their_names_and_of_those_that_are_gone() {
         let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
         let mut tally = Tally::new(2, 2);
-        let step = Step { reward: -1.5, recover: true, ..Step::default() };
+        let step = Step { reward: -1.5, then: Some(Then::Recover), ..Step::default() };
         tally.count(&step, &[Some(-1.0), Some(-0.5)]);
         tally.swap_rules(&names(&["wall", "lost"]), &names(&["lost", "slow", "wall"]), 400);
         tally.count(&step, &[Some(-2.0), None]);
         assert_eq!(tally.fired, [2, 0, 1]);
         assert_eq!(tally.by_rule(0), [-2.5, 0.0, -1.0]);
-        assert_eq!((tally.failures, tally.curve()), (2, vec![-3.0]));
+        assert_eq!((tally.endings().failures, tally.curve()), (2, vec![-3.0]));
+        assert_eq!(tally.fired_in(0), [2, 0, 1]);
     }
 }

@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::digest::StateHash;
+use super::measured::figures;
 use super::snapshot::{Glimpse, Snapshot};
-use super::summary::TestFigures;
 use super::trail::{Recorder, Trail};
 use super::truth::Truth;
 use super::{
@@ -14,14 +14,19 @@ use super::{
 };
 use crate::diagnostic::Result;
 use crate::learner::{Combined, Policy};
+use crate::outcome::Ending;
 use crate::random::{Random, Stream};
 use crate::robot::{Robot, SimulatedRobot};
 use crate::settings::Settings;
+use crate::verdict::TestFigures;
 
 /// Steps of the test whose path is kept for drawing.
 const TRAIL_STEPS: u64 = 2 * WINDOW_STEPS;
 /// The step after which one frame is kept for drawing.
 const SNAPSHOT_STEP: u64 = 60;
+
+/// Of so many goals the durations are kept.
+const MOST_GOALS: u64 = 1 << 16;
 
 /// What a test found.
 #[derive(Debug, Clone)]
@@ -160,10 +165,12 @@ pub fn test_robot<R: Robot>(
     let mut truth = Truth::new(cycle.robot(), &plan.layout, run.period_s, run.test_steps);
     let mut trail = Recorder::new(TRAIL_STEPS, cycle.robot());
     let mut glimpse = Glimpse::after(SNAPSHOT_STEP.min(run.test_steps));
-    let mut counts = Counts { tally: Tally::new(plan.behaviour.rules().len(), run.test_steps), stop };
+    let tally = Tally::new(plan.behaviour.rules().len(), run.test_steps);
+    let goals_steps = Vec::with_capacity(run.test_steps.min(MOST_GOALS) as usize);
+    let mut counts = Counts { tally, attempt_steps: 0, goals_steps, stop };
     let mut observers = (&mut hash, ((&mut truth, also), (&mut trail, (&mut glimpse, &mut counts))));
     let steps = drive(cycle, chooser, &mut observers, run.test_steps)?;
-    let figures = TestFigures::new(plan, steps, &counts.tally, truth.as_ref());
+    let figures = figures(plan, steps, &counts.tally, &counts.goals_steps, truth.as_ref());
     let snapshot = glimpse.taken.unwrap_or_else(|| Snapshot::of(cycle));
     let (trail, state_hash) = (trail.finish(), hash.finish());
     Ok(TestRun { figures, trail, snapshot, tally: counts.tally, state_hash, combination: None })
@@ -172,11 +179,21 @@ pub fn test_robot<R: Robot>(
 /// Counts, and looks at the end of every window whether to stop.
 struct Counts<'a> {
     tally: Tally,
+    /// Steps of the present attempt, and of each that reached its goal.
+    attempt_steps: u32,
+    goals_steps: Vec<u32>,
     stop: &'a AtomicBool,
 }
 
 impl<R: Robot> Observer<R> for Counts<'_> {
     fn stepped(&mut self, cycle: &Cycle<R>, step: &Step) -> ControlFlow<()> {
+        self.attempt_steps += 1;
+        if let Some(ending) = step.ending() {
+            let steps = std::mem::take(&mut self.attempt_steps);
+            if ending == Ending::Goal && self.goals_steps.len() < self.goals_steps.capacity() {
+                self.goals_steps.push(steps);
+            }
+        }
         if self.tally.count(step, cycle.fired()) && self.stop.load(Ordering::Relaxed) {
             return ControlFlow::Break(());
         }

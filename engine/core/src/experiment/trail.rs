@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use super::{Cycle, Observer, Step};
 use crate::geometry::Pose;
+use crate::outcome::Ending;
 use crate::robot::Robot;
 
 /// A path: legs between recoveries, and where it failed.
@@ -44,7 +45,7 @@ impl<R: Robot> Observer<R> for Recorder {
             if let Some(leg) = self.trail.legs.last_mut() {
                 leg.push(place);
             }
-            if step.failed() {
+            if step.ending() == Some(Ending::Failure) {
                 self.trail.failures.push(place);
             }
         }

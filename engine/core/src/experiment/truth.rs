@@ -20,7 +20,8 @@ const STANDING_M: f64 = 0.2;
 #[derive(Debug, Clone)]
 pub struct Truth {
     layout: Arc<Layout>,
-    progress: Option<RouteProgress>,
+    /// Along the lap route, if there is one.
+    pub along: Option<Along>,
     last: Pose,
     /// Length of the path, metres.
     pub distance_m: f64,
@@ -30,6 +31,16 @@ pub struct Truth {
     pub spells: Spells,
     /// Distance to the prey after each step, metres; empty without a prey.
     pub prey_m: Vec<f32>,
+}
+
+/// Where a robot was beside the lap route.
+#[derive(Debug, Clone, Copy)]
+pub struct Along {
+    progress: RouteProgress,
+    /// Steps that ended farther from it than its half width.
+    pub off_steps: u64,
+    /// Sum of the distances from it after each step, metres.
+    pub offsets_m: f64,
 }
 
 /// Counts of spells of 20 s.
@@ -61,12 +72,15 @@ impl Truth {
     #[must_use]
     pub fn new(robot: &impl Robot, layout: &Arc<Layout>, period_s: f64, steps: u64) -> Option<Self> {
         let pose = robot.whereabouts()?.pose;
-        let progress = layout.lap.map(|lap| RouteProgress::new(&layout.routes[lap], Point2::new(pose.x_m, pose.y_m)));
+        let along = layout.lap.map(|lap| {
+            let progress = RouteProgress::new(&layout.routes[lap], Point2::new(pose.x_m, pose.y_m));
+            Along { progress, off_steps: 0, offsets_m: 0.0 }
+        });
         let prey_m = Vec::with_capacity(if robot.prey().is_some() { steps as usize } else { 0 });
         let spell_steps = (SPELL_S / period_s).round().max(1.0) as u64;
         Some(Self {
             layout: Arc::clone(layout),
-            progress,
+            along,
             last: pose,
             distance_m: 0.0,
             spell: Spell::new(pose, 0.0),
@@ -83,8 +97,10 @@ impl Truth {
         self.spell.turn_rad += wrap_angle(pose.yaw_rad - self.last.yaw_rad);
         self.spell.steps += 1;
         self.last = pose;
-        if let (Some(progress), Some(lap)) = (&mut self.progress, self.layout.lap) {
-            progress.update(&self.layout.routes[lap], Point2::new(pose.x_m, pose.y_m));
+        if let (Some(along), Some(lap)) = (&mut self.along, self.layout.lap) {
+            along.progress.update(&self.layout.routes[lap], Point2::new(pose.x_m, pose.y_m));
+            along.off_steps += u64::from(!along.progress.is_on());
+            along.offsets_m += along.progress.offset_m();
         }
         if let Some(prey) = prey {
             self.prey_m.push(pose.distance_m(prey) as f32);
@@ -96,7 +112,7 @@ impl Truth {
 
     /// The robot was put elsewhere: no progress is counted for that, and the spell begins anew.
     fn jump(&mut self, pose: Pose) {
-        if let (Some(progress), Some(lap)) = (&mut self.progress, self.layout.lap) {
+        if let (Some(Along { progress, .. }), Some(lap)) = (&mut self.along, self.layout.lap) {
             progress.jump(&self.layout.routes[lap], Point2::new(pose.x_m, pose.y_m));
         }
         self.last = pose;
@@ -106,7 +122,7 @@ impl Truth {
     /// Signed progress along the lap route, metres; `None` in a world without one.
     #[must_use]
     pub fn net_m(&self) -> Option<f64> {
-        self.progress.as_ref().map(RouteProgress::net_m)
+        self.along.as_ref().map(|along| along.progress.net_m())
     }
 
     fn end_spell(&mut self) {

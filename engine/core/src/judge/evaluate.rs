@@ -9,6 +9,7 @@ use super::rule::{Clause, CompiledRule, ScriptClause};
 use super::running;
 use super::views::{AllFacts, number, view};
 use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
+use crate::outcome::Then;
 use rhai::{CallFnOptions, Dynamic, Map, Scope};
 use std::ops::Range;
 use std::sync::Arc;
@@ -18,8 +19,8 @@ use std::sync::Arc;
 pub struct Judgement {
     /// The sum of all that fired.
     pub reward: f64,
-    /// Whether the robot must be brought back.
-    pub recover: bool,
+    /// What the script says if the attempt ends here.
+    pub then: Option<Then>,
 }
 
 /// A script, and what it can read in this step.
@@ -117,30 +118,18 @@ impl Present {
     pub(crate) fn reward(&self, span: &Range<usize>) -> Result<Judgement> {
         let result = self.call("reward")?;
         if let Some(reward) = number(&result) {
-            return Ok(Judgement { reward, recover: false });
+            return Ok(Judgement { reward, then: None });
         }
-        let wrong = |message: String| {
-            Diagnostic::new("E-REWARD-VALUE", message)
-                .at(&self.compiled.source, span.clone(), "defined here")
-                .help("return a number, or #{ value: -1, recover: true }")
-        };
         let kind = explain::plain_kind(result.type_name());
-        let Some(map) = result.try_cast::<Map>() else {
-            return wrong(format!("'fn reward' must return a number or a map, found {kind}")).fail();
+        let read = match result.try_cast::<Map>() {
+            Some(map) => of_map(&map),
+            None => Err(format!("'fn reward' must return a number or a map, found {kind}")),
         };
-        if let Some(key) = map.keys().find(|key| !matches!(key.as_str(), "value" | "recover")) {
-            let near = nearest_name(key, ["value", "recover"])
-                .map_or(String::new(), |near| format!("; did you mean '{near}'?"));
-            return wrong(format!("the map that 'fn reward' returned has a key '{}'{near}", printable(key))).fail();
-        }
-        let recover = map.get("recover").map_or(Ok(false), Dynamic::as_bool);
-        match (map.get("value").and_then(number), recover) {
-            (Some(reward), Ok(recover)) => Ok(Judgement { reward, recover }),
-            (None, _) => wrong("the map that 'fn reward' returned has no number as its 'value'".to_owned()).fail(),
-            (_, Err(_)) => {
-                wrong("'recover' in the map that 'fn reward' returned must be true or false".to_owned()).fail()
-            }
-        }
+        read.map_err(|message| {
+            let wrong =
+                Diagnostic::new("E-REWARD-VALUE", message).at(&self.compiled.source, span.clone(), "defined here");
+            Box::new(wrong.help("return a number, or #{ value: -1, then: \"fail\" }"))
+        })
     }
 
     /// The error for a value that is not finite.
@@ -151,4 +140,33 @@ impl Present {
             .at(&self.compiled.source, span, format!("gave {value}"))
             .help("look for a division by 0, or the root or logarithm of a negative number")
     }
+}
+
+/// What a map that `fn reward` returned says, or what is wrong with it.
+fn of_map(map: &Map) -> std::result::Result<Judgement, String> {
+    const KEYS: [&str; 3] = ["value", "then", "recover"];
+    if let Some(key) = map.keys().find(|key| !KEYS.contains(&key.as_str())) {
+        let near = nearest_name(key, KEYS).map_or(String::new(), |near| format!("; did you mean '{near}'?"));
+        return Err(format!("the map that 'fn reward' returned has a key '{}'{near}", printable(key)));
+    }
+    let Some(reward) = map.get("value").and_then(number) else {
+        return Err("the map that 'fn reward' returned has no number as its 'value'".to_owned());
+    };
+    let Ok(recover) = map.get("recover").map_or(Ok(false), Dynamic::as_bool) else {
+        return Err("'recover' in the map that 'fn reward' returned must be true or false".to_owned());
+    };
+    let then = match map.get("then").map(|then| then.clone().into_immutable_string()) {
+        None => recover.then_some(Then::Recover),
+        Some(_) if map.contains_key("recover") => {
+            return Err(
+                "the map that 'fn reward' returned has both 'then' and 'recover': leave out 'recover'".to_owned()
+            );
+        }
+        Some(word) => {
+            let words = Then::ALL.map(|(word, _)| format!("\"{word}\"")).join(", ");
+            let then = word.ok().and_then(|word| Then::of(&word));
+            Some(then.ok_or_else(|| format!("'then' in the map that 'fn reward' returned must be one of {words}"))?)
+        }
+    };
+    Ok(Judgement { reward, then })
 }

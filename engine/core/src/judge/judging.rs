@@ -113,8 +113,8 @@ impl Judge {
             }
             fired[index] = Some(value);
             judgement.reward += value;
-            if rule.recover {
-                judgement.recover = true;
+            if rule.then.is_some() {
+                judgement.then = rule.then;
                 return Ok(judgement);
             }
         }
@@ -125,7 +125,7 @@ impl Judge {
             }
             fired[rules.len()] = Some(own.reward);
             judgement.reward += own.reward;
-            judgement.recover = own.recover;
+            judgement.then = own.then;
         }
         Ok(judgement)
     }

@@ -3,6 +3,7 @@
 use super::expression::{Flag, Number};
 use super::readings::Part;
 use crate::diagnostic::printable;
+use crate::outcome::Then;
 use rhai::AST;
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -62,7 +63,7 @@ pub(crate) struct CompiledRule {
     pub persistence: Persistence,
     pub value: Clause<Number>,
     pub value_span: Range<usize>,
-    pub recover: bool,
+    pub then: Option<Then>,
     /// What the condition reads.
     pub parts: Vec<Part>,
 }

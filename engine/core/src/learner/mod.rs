@@ -64,7 +64,7 @@ pub use q_table::QTable;
 pub use shipped::{ShippedLearner, shipped_learner};
 pub use softmax::{Softmax, temperature};
 pub use table_learner::TableLearner;
-pub use task::{Ending, Task, Transition};
+pub use task::{Task, Transition};
 
 /// What learns: chooses an action in a state, and is told what came of it.
 ///

@@ -5,6 +5,7 @@ use super::mirror::Mirrored;
 use super::replay::Replay;
 use super::{Carry, Learner, Mirror, Policy, QTable, Softmax, Task, Transition};
 use super::{sarsa_lambda, ttd, ttd_cichosz};
+use crate::outcome::Ending;
 use crate::random::Random;
 use crate::saved::{Loading, Saving, Unfit};
 use crate::settings::{LearnerKind, LearnerSettings};
@@ -60,7 +61,7 @@ impl Learner for TableLearner {
 
     fn learn(&mut self, transition: &Transition) {
         let Transition { state, action, reward, next_state, ending, .. } = *transition;
-        let terminal = ending.is_some() && self.failure_is_terminal;
+        let terminal = self.failure_is_terminal && ending.is_some_and(Ending::is_terminal);
         self.backup.learn(&mut self.table, &Lesson { state, action, reward, next_state, terminal });
     }
 

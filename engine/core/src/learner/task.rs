@@ -1,6 +1,7 @@
 //! What a learner is made for, and what it is told.
 
 use crate::geometry::Twist;
+use crate::outcome::Ending;
 use crate::random::Random;
 use crate::state::Digit;
 
@@ -26,23 +27,6 @@ impl Task {
     #[must_use]
     pub fn plain(states: usize, actions: Vec<Twist>, random: Random) -> Self {
         Self { digits: vec![Digit { part: 0, values: states }], states, actions, mirror: None, random }
-    }
-}
-
-/// How an attempt ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Ending {
-    /// Something went wrong, and the script asked for recovery.
-    Failure,
-    /// What the script wants was reached.
-    Goal,
-}
-
-impl Ending {
-    /// How a step ended the attempt, if the script asks for recovery: with a reward above 0 it reached its goal.
-    #[must_use]
-    pub fn of(recover: bool, reward: f64) -> Option<Self> {
-        recover.then_some(if reward > 0.0 { Self::Goal } else { Self::Failure })
     }
 }
 

@@ -2,10 +2,13 @@
 
 use super::outline::ScriptOutline;
 use super::setup::SettingPlaces;
-use crate::diagnostic::{Mistakes, Result, SourceText};
+use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText};
 use crate::judge::compiled::CompiledScript;
+use crate::judge::rule::CompiledRule;
 use crate::judge::{Judge, RuleText, reach};
+use crate::outcome::Then;
 use crate::settings::{LaserSettings, Settings};
+use crate::verdict::{Condition, Endable, Success};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -18,6 +21,8 @@ pub struct Behaviour {
     rules: Vec<RuleText>,
     outline: ScriptOutline,
     compiled: Arc<CompiledScript>,
+    success: Vec<Condition>,
+    endable: Endable,
 }
 
 impl Behaviour {
@@ -35,7 +40,32 @@ impl Behaviour {
             let text = source.text[source.line_range(line)].trim().to_owned();
             RuleText { name: "reward".to_owned(), line, text }
         }));
-        Self { name: name.to_owned(), settings, places, rules, outline, compiled: Arc::new(compiled) }
+        let endable = endable(&compiled.rules, outline.reward_recovers);
+        let compiled = Arc::new(compiled);
+        Self { name: name.to_owned(), settings, places, rules, outline, compiled, success: Vec::new(), endable }
+    }
+
+    pub(super) fn with_success(self, success: Vec<Condition>) -> Self {
+        Self { success, ..self }
+    }
+
+    /// What is called success in a world with a lap route or without one, in a test that takes so many seconds.
+    #[must_use]
+    pub fn success(&self, has_route: bool, seconds: f64) -> Success {
+        Success::new(&self.success, self.endable, has_route, seconds)
+    }
+
+    /// Adds every condition of success that reads a figure which a world without a lap route does not have.
+    pub(crate) fn find_unmeasurable(&self, mistakes: &mut Mistakes) {
+        for condition in &self.success {
+            let figure = condition.term.figures().into_iter().find(|asked| asked.figure.needs_route());
+            if let (Some(asked), Some(span)) = (figure, &condition.span) {
+                let message = format!("this world has no route \"lap\": '{}' cannot be measured", asked.figure.name);
+                let wrong = Diagnostic::new("E-SCRIPT-SUCCESS", message);
+                let help = "add a [[route]] named \"lap\" to the world file, or ask for another figure";
+                mistakes.add(wrong.at(self.source(), span.clone(), "needs the route").help(help));
+            }
+        }
     }
 
     /// Adds every rule that can never fire with this laser, on a floor at most `drop_m` metres below the robot's own
@@ -108,4 +138,16 @@ impl Behaviour {
     pub(super) fn compiled(&self) -> &CompiledScript {
         &self.compiled
     }
+}
+
+/// In which ways an attempt may end; what a function or a value that changes will say is not known here.
+fn endable(rules: &[CompiledRule], by_function: bool) -> Endable {
+    let may = |ending: Then, other_side: fn(f64) -> bool| {
+        by_function
+            || rules.iter().any(|rule| match rule.then {
+                Some(Then::Recover) => !rule.fixed_value().is_some_and(other_side),
+                then => then == Some(ending),
+            })
+    };
+    Endable { failure: may(Then::Fail, |value| value >= 0.0), goal: may(Then::Goal, |value| value <= 0.0) }
 }

@@ -5,6 +5,7 @@ use super::outline::{BeamLoop, Gathers, ScriptOutline, UnusedName};
 use super::positions::body_end;
 use super::reader::{Local, OutlineReader};
 use super::source::Code;
+use super::syntax::is_rule_expr;
 use super::syntax::written_rules;
 use crate::judge::fact_table::is_group;
 use crate::judge::rule::CompiledRule;
@@ -61,7 +62,7 @@ fn read(reader: &OutlineReader<'_>, ast: &AST, outline: &mut ScriptOutline) {
     });
     let statements = ast.clone_statements_only();
     statements.walk(&mut |path: &[ASTNode<'_>]| {
-        let in_rule = path.iter().any(|node| matches!(node, ASTNode::Expr(Expr::Custom(..))));
+        let in_rule = path.iter().any(|node| matches!(node, ASTNode::Expr(expr) if is_rule_expr(expr)));
         if let (true, Some(ASTNode::Expr(expr))) = (in_rule, path.last()) {
             groups.extend(group(expr));
         }
@@ -153,14 +154,15 @@ fn group(expr: &Expr) -> Option<String> {
 /// Whether it is a map that asks for recovery.
 fn recovers(expr: &Expr) -> bool {
     match expr {
-        Expr::Map(map, _) => map
-            .0
-            .iter()
-            .any(|(key, value)| key.name.as_str() == "recover" && !matches!(value, Expr::BoolConstant(false, _))),
+        Expr::Map(map, _) => map.0.iter().any(|(key, value)| match key.name.as_str() {
+            "then" => true,
+            "recover" => !matches!(value, Expr::BoolConstant(false, _)),
+            _ => false,
+        }),
         // A constant map is folded to one value.
-        Expr::DynamicConstant(value, _) => value
-            .read_lock::<rhai::Map>()
-            .is_some_and(|map| map.get("recover").is_some_and(|on| on.as_bool() == Ok(true))),
+        Expr::DynamicConstant(value, _) => value.read_lock::<rhai::Map>().is_some_and(|map| {
+            map.contains_key("then") || map.get("recover").is_some_and(|on| on.as_bool() == Ok(true))
+        }),
         _ => false,
     }
 }

@@ -10,7 +10,7 @@ use super::source::{self, Code};
 use super::spoilt::Spoilt;
 use super::tree::tree;
 use super::unread::Unread;
-use super::{names, parts, rehearsal, syntax, top_level};
+use super::{names, parts, rehearsal, success, syntax, top_level};
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, printable};
 use crate::judge::compiled::CompiledScript;
 use crate::judge::needs::Needs;
@@ -68,7 +68,7 @@ impl Draft {
         mistakes: &mut Mistakes,
     ) -> std::result::Result<(Behaviour, Unread), Diagnostic> {
         let mut engine = sandbox::engine();
-        syntax::register(&mut engine);
+        syntax::register(&mut engine, success::is_asked_for(code));
         let log = Log::register(&mut engine);
         let tree = tree(&mut engine, code, mistakes)?;
         let mut needs = Needs::default();
@@ -89,6 +89,12 @@ impl Draft {
         calls.into_iter().for_each(|call| unread.all_of(call));
         engine.register_global_module(constants_module(&constants).into());
         let rules = rules(code, &tree.ast, &constants, &mut needs, &spoilt, mistakes);
+        let rule_names: Vec<&str> = rules
+            .iter()
+            .map(|rule| rule.text.name.as_str())
+            .chain(has_function(&tree.ast, "reward").then_some("reward"))
+            .collect();
+        let success = success::conditions(code, &tree.ast, &constants, &rule_names, &spoilt, mistakes);
         let function = |name| if has_function(&tree.ast, name) { code.function(name) } else { None };
         let (reward, calibrate) = (function("reward"), function("calibrate"));
         if rules.is_empty() && reward.is_none() && mistakes.is_empty() {
@@ -104,7 +110,7 @@ impl Draft {
         };
         let (source, ast) = (code.source.clone(), tree.ast);
         let compiled = CompiledScript { source, engine, ast, constants, rules, needs, reward, reward_parts, calibrate };
-        let behaviour = Behaviour::new(name, settings, places, outline, compiled);
+        let behaviour = Behaviour::new(name, settings, places, outline, compiled).with_success(success);
         check_with_settings(&behaviour, &mut spoilt, &unread, mistakes)?;
         Ok((behaviour, unread))
     }

@@ -22,6 +22,7 @@ mod setup;
 mod setup_table;
 mod source;
 mod spoilt;
+mod success;
 mod syntax;
 mod top_level;
 mod tree;

@@ -4,6 +4,8 @@ use super::access::{Access, Link};
 use super::setup_table::SETUP;
 use super::source::Code;
 use super::spoilt::Spoilt;
+use super::success;
+use super::syntax::is_success_expr;
 use super::tree::Tree;
 use super::unknown::Unknown;
 use crate::diagnostic::{Diagnostic, Mistakes};
@@ -32,9 +34,10 @@ pub(super) fn check_names(
     let calibrates = own.iter().any(|(name, _)| name == "calibrate") || spoilt.has("calibrate");
     let variables = tree.refused.is_some().then(|| tree.known.variables.iter().map(String::as_str).collect());
     let unknown = Unknown::default();
+    let figures = success::is_asked_for(code);
     let in_function = false;
     let mut names =
-        Names { code, own, facts_names, variables, spoilt, calibrates, in_function, needs, unknown, mistakes };
+        Names { code, own, facts_names, variables, spoilt, calibrates, figures, in_function, needs, unknown, mistakes };
     names.own_functions();
     names.walk(&ast.clone_statements_only());
     names.in_function = true;
@@ -51,6 +54,8 @@ struct Names<'a> {
     variables: Option<BTreeSet<&'a str>>,
     spoilt: &'a Spoilt<'a>,
     calibrates: bool,
+    /// Whether `test` and `untrained` are figures, and not the script's own names.
+    figures: bool,
     in_function: bool,
     needs: &'a mut Needs,
     unknown: Unknown,
@@ -97,11 +102,13 @@ impl Names<'_> {
     }
 
     fn node(&mut self, path: &[ASTNode<'_>]) {
-        let rule = path.iter().position(|node| matches!(node, ASTNode::Expr(Expr::Custom(..))));
-        let (in_rule, misplaced) = (rule.is_some(), rule.is_some_and(|depth| self.in_function || depth != 1));
+        let form = path.iter().position(|node| matches!(node, ASTNode::Expr(Expr::Custom(..))));
+        let (in_rule, misplaced) = (form.is_some(), form.is_some_and(|depth| self.in_function || depth != 1));
+        let success = path.iter().any(|node| matches!(node, ASTNode::Expr(expr) if is_success_expr(expr)));
         match path.last() {
             Some(ASTNode::Expr(Expr::Custom(_, position))) if misplaced => {
-                let message = "a rule stands by itself, not inside a function, a loop or a condition".to_owned();
+                let what = if success { "a condition of success" } else { "a rule" };
+                let message = format!("{what} stands by itself, not inside a function, a loop or a condition");
                 self.mistake(
                     "E-SCRIPT-RULE",
                     *position,
@@ -110,8 +117,8 @@ impl Names<'_> {
                     "move it to the top level of the script",
                 );
             }
-            // It reads other names where it belongs.
-            _ if misplaced => {}
+            // It reads other names where it belongs; what a success reads is looked at where it is compiled.
+            _ if misplaced || success => {}
             Some(ASTNode::Stmt(Stmt::Var(variable, ..))) if !self.in_function && path.len() == 1 => {
                 self.defined(&variable.0.name, variable.0.pos);
             }
@@ -136,6 +143,11 @@ impl Names<'_> {
         let Some(Access { root, is_local: false, position, .. }) = Access::of(expr) else { return };
         let is_group = is_group(root);
         if !is_group && !matches!(root, "facts" | "calibrated") {
+            if matches!(root, "test" | "untrained") && self.figures {
+                let message = format!("'{root}' can be read only in a success: nothing is tested yet");
+                let help = "success \"name\" when test.failures_per_1000 <= 2;";
+                return self.mistake("E-SCRIPT-SUCCESS", position, message, "read too early", help);
+            }
             let defined = self.variables.as_ref().is_none_or(|known| known.contains(root)) || self.spoilt.has(root);
             if !defined && !self.own.iter().any(|(name, _)| name == root) {
                 self.unknown.variable(root, explain::offset(&self.code.source, position));

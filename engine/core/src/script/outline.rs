@@ -1,6 +1,7 @@
 //! What a script says, told apart for whoever looks for mistakes in it: comparisons, conditions, loops, names.
 
 use crate::judge::{Comparison, FactId};
+use crate::outcome::Then;
 use std::ops::Range;
 
 /// A fact as a script names it.
@@ -53,8 +54,8 @@ pub struct RuleOutline {
     pub value_span: Range<usize>,
     /// The bytes of the time after `for`.
     pub time_span: Option<Range<usize>>,
-    /// Whether it ends with `then recover`.
-    pub recover: bool,
+    /// What it says if it ends the attempt.
+    pub then: Option<Then>,
 }
 
 /// What a loop over the beams of the laser gathers.
@@ -113,7 +114,7 @@ impl ScriptOutline {
     /// Whether anything can ask for recovery.
     #[must_use]
     pub fn recovers(&self) -> bool {
-        self.reward_recovers || self.rules.iter().any(|rule| rule.recover)
+        self.reward_recovers || self.rules.iter().any(|rule| rule.then.is_some())
     }
 
     /// Every comparison: of rules, then of functions.

@@ -29,7 +29,7 @@ impl OutlineReader<'_> {
                 let tail = &self.code.plain[start..];
                 start..start + tail[..tail.find("=>").unwrap_or(0)].trim_end().len()
             }),
-            recover: rule.recover,
+            then: rule.then,
         }
     }
 

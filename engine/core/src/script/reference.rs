@@ -7,6 +7,7 @@ use crate::judge::fact_table::{FACTS, Fact, GROUPS};
 use crate::judge::functions::FUNCTIONS;
 use crate::judge::sandbox;
 use crate::settings::{SETTINGS, Settings};
+use crate::verdict::{FIGURES, Figure};
 use std::fmt::Write;
 
 /// The page about the script language: `scripts/README.md`.
@@ -15,6 +16,7 @@ pub fn reference() -> String {
     include_str!("reference.md")
         .replace("{{SETUP}}", &setup())
         .replace("{{SETTINGS}}", &settings())
+        .replace("{{FIGURES}}", &figures())
         .replace("{{FACTS}}", &facts())
         .replace("{{FUNCTIONS}}", &functions())
         .replace("{{LIMITS}}", &limits())
@@ -65,6 +67,19 @@ fn facts() -> String {
         format!("### `{group}`\n\n{about}\n\n{}", table(&["fact", "unit", "values", "what it is"], rows))
     });
     groups.collect::<Vec<_>>().join("\n\n")
+}
+
+fn figures() -> String {
+    let row = |figure: &Figure| {
+        let name = if figure.is_of_rule() { format!("{}(\"rule\")", figure.name) } else { figure.name.to_owned() };
+        let of = match (figure.needs_route(), figure.is_of_windows()) {
+            (true, _) => "a route",
+            (false, true) => "a test, a window",
+            (false, false) => "a test",
+        };
+        vec![format!("`test.{name}`"), figure.unit.to_owned(), of.to_owned(), figure.about.to_owned()]
+    };
+    table(&["figure", "unit", "of", "what it is"], FIGURES.iter().map(row))
 }
 
 fn values() -> impl Iterator<Item = &'static Fact> {

@@ -87,8 +87,8 @@ fn compiled(
         return None;
     }
     let text = RuleText { name: written.name.to_owned(), line, text };
-    let (recover, parts) = (written.recover, parts(code, written.condition, compiler));
-    Some(CompiledRule { text, condition, condition_span, persistence, value, value_span, recover, parts })
+    let (then, parts) = (written.then, parts(code, written.condition, compiler));
+    Some(CompiledRule { text, condition, condition_span, persistence, value, value_span, then, parts })
 }
 fn wrong(code: &Code, message: &str, span: &Range<usize>, label: &str) -> Diagnostic {
     Diagnostic::new("E-SCRIPT-RULE", message).at(&code.source, span.clone(), label)

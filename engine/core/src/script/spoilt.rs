@@ -6,7 +6,7 @@
 use super::positions::{body_end, first};
 use super::setup_table::SETUP;
 use super::source::Code;
-use super::syntax::is_rule;
+use super::syntax::is_form;
 use super::tree::Tree;
 use crate::diagnostic::Mistakes;
 use crate::judge::explain::offset;
@@ -166,7 +166,7 @@ fn statements(code: &Code, statements: &[Stmt]) -> Vec<(Range<usize>, Defines)> 
     let defines = |statement: &Stmt| match statement {
         Stmt::FnCall(call, _) if SETUP.iter().any(|row| row.name == call.name) => Defines::Nothing,
         Stmt::Var(variable, ..) => Defines::Variable(variable.0.name.to_string()),
-        rule if is_rule(rule) => Defines::Nothing,
+        form if is_form(form) => Defines::Nothing,
         _ => Defines::Anything,
     };
     let starts: Vec<usize> = statements.iter().map(start).collect();

@@ -1,5 +1,6 @@
-//! The form of a rule: `rule "name" when CONDITION [for N steps | for N seconds] => VALUE [then recover];`
+//! The forms of a rule and of a success: `rule "name" when CONDITION [for N steps | for N seconds] => VALUE [then recover | fail | goal | restart];`
 
+use crate::outcome::Then;
 use rhai::{CustomExpr, Dynamic, Engine, Expr, ImmutableString, LexError, ParseError, Position, Stmt};
 
 /// Marks an error message as ours: it is shown as it stands.
@@ -21,14 +22,26 @@ pub(super) struct WrittenRule<'a> {
     pub condition: &'a Expr,
     pub time: Option<(&'a Expr, TimeUnit)>,
     pub value: &'a Expr,
-    pub recover: bool,
+    pub then: Option<Then>,
     /// How many top-level variables stand before it.
     pub variables: usize,
 }
 
-/// Teaches the form to an engine. Running a rule does nothing: rules are read from the tree.
-pub(super) fn register(engine: &mut Engine) {
+/// A condition of success as it stands in the script's tree: `success "name" when CONDITION;`
+#[derive(Debug)]
+pub(super) struct WrittenSuccess<'a> {
+    pub name: &'a str,
+    pub name_position: Position,
+    pub condition: &'a Expr,
+}
+
+/// Teaches the forms to an engine. Running them does nothing: they are read from the tree. The parser takes the first word of
+/// a form wherever it stands, so `success` is taught only to a script that has such a statement.
+pub(super) fn register(engine: &mut Engine, with_success: bool) {
     engine.register_custom_syntax_with_state_raw("rule", next, false, |_, _, _| Ok(Dynamic::UNIT));
+    if with_success {
+        engine.register_custom_syntax_with_state_raw("success", next_of_success, false, |_, _, _| Ok(Dynamic::UNIT));
+    }
 }
 
 type Next = Result<Option<ImmutableString>, ParseError>;
@@ -70,14 +83,48 @@ fn next(symbols: &[ImmutableString], ahead: &str, _: &mut Dynamic) -> Next {
         ("steps" | "step" | "seconds" | "second", _) => {
             expect("=>", ahead, "this rule has no value: after the time comes '=>' and a number, such as -1")
         }
-        ("then", _) => expect("recover", ahead, "after 'then' comes 'recover'"),
+        ("then", _) if Then::of(ahead).is_some() => Ok(Some(ahead.into())),
+        ("then", _) => wrong("after 'then' comes recover, fail, goal or restart"),
         _ => Ok(None),
     }
 }
 
-/// Whether a statement is a rule.
-pub(super) fn is_rule(statement: &Stmt) -> bool {
+fn next_of_success(symbols: &[ImmutableString], ahead: &str, _: &mut Dynamic) -> Next {
+    match symbols {
+        [_] if ahead.starts_with('"') => Ok(Some("$string$".into())),
+        [_] => wrong("a condition of success needs a name in quotes: success \"drives round\" when ..."),
+        [_, _] => expect("when", ahead, "after the name of a success comes 'when' and a condition"),
+        [_, _, _] if matches!(ahead, ";" | "{EOF}") => wrong("after 'when' comes a condition: test.laps >= 5"),
+        [_, _, _] => Ok(Some("$expr$".into())),
+        _ => Ok(None),
+    }
+}
+
+/// Whether an expression is a rule.
+pub(super) fn is_rule_expr(expr: &Expr) -> bool {
+    matches!(expr, Expr::Custom(custom, _) if custom.tokens.first().is_some_and(|word| word == "rule"))
+}
+
+/// Whether an expression is a condition of success.
+pub(super) fn is_success_expr(expr: &Expr) -> bool {
+    matches!(expr, Expr::Custom(custom, _) if custom.tokens.first().is_some_and(|word| word == "success"))
+}
+
+/// Whether a statement is a rule or a condition of success.
+pub(super) fn is_form(statement: &Stmt) -> bool {
     matches!(statement, Stmt::Expr(expr) if matches!(**expr, Expr::Custom(..)))
+}
+
+/// The conditions of success that stand at the top level, in their order.
+pub(super) fn written_successes(statements: &[Stmt]) -> Vec<WrittenSuccess<'_>> {
+    statements.iter().filter_map(written_success).collect()
+}
+
+fn written_success(statement: &Stmt) -> Option<WrittenSuccess<'_>> {
+    let Stmt::Expr(expr) = statement else { return None };
+    let (Expr::Custom(custom, _), true) = (&**expr, is_success_expr(expr)) else { return None };
+    let [Expr::StringConstant(name, name_position), condition] = custom.inputs.as_slice() else { return None };
+    Some(WrittenSuccess { name, name_position: *name_position, condition })
 }
 
 /// The rules that stand at the top level, in their order.
@@ -88,7 +135,7 @@ pub(super) fn written_rules(statements: &[Stmt]) -> Vec<WrittenRule<'_>> {
         match statement {
             Stmt::Var(variable, ..) if variable.2.is_none() => variables += 1,
             Stmt::Expr(expr) => {
-                if let Expr::Custom(custom, position) = &**expr {
+                if let (Expr::Custom(custom, position), true) = (&**expr, is_rule_expr(expr)) {
                     rules.extend(read(custom, *position, variables));
                 }
             }
@@ -109,7 +156,7 @@ fn read(custom: &CustomExpr, position: Position, variables: usize) -> Option<Wri
         [condition, time, value] => (condition, Some((time, unit)), value),
         _ => return None,
     };
-    let recover = word(&["recover"]);
+    let then = custom.tokens.last().and_then(|last| Then::of(last));
     let name_position = *name_position;
-    Some(WrittenRule { name, name_position, position, condition, time, value, recover, variables })
+    Some(WrittenRule { name, name_position, position, condition, time, value, then, variables })
 }

@@ -8,6 +8,7 @@ mod same;
 use super::*;
 use crate::diagnostic::{Diagnostic, SourceText};
 use crate::judge::{Judge, Judgement};
+use crate::outcome::Then;
 
 pub(super) fn parse(text: &str) -> Result<Behaviour, Box<Diagnostic>> {
     Behaviour::parse("test", SourceText::new("test.rhai", text))
@@ -34,7 +35,7 @@ fn a_rule_fires_when_its_condition_holds() {
     assert_eq!(judge.judge().unwrap(), Judgement::default());
     assert_eq!(judge.fired(), [None]);
     judge.facts_mut().ranges_m[40] = 0.25;
-    assert_eq!(judge.judge().unwrap(), Judgement { reward: -1.0, recover: true });
+    assert_eq!(judge.judge().unwrap(), Judgement { reward: -1.0, then: Some(Then::Recover) });
     assert_eq!(judge.fired(), [Some(-1.0)]);
 }
 
@@ -83,14 +84,14 @@ fn rules_add_up_until_one_recovers() {
         "rule \"a\" when true => 1; rule \"b\" when true => -3 then recover; rule \"c\" when true => 10;
          fn reward(facts) { 100 }",
     );
-    assert_eq!(judge.judge().unwrap(), Judgement { reward: -2.0, recover: true });
+    assert_eq!(judge.judge().unwrap(), Judgement { reward: -2.0, then: Some(Then::Recover) });
     assert_eq!(judge.fired(), [Some(1.0), Some(-3.0), None, None]);
 }
 
 #[test]
 fn the_reward_function_adds_to_the_rules() {
     let mut judge = judge("rule \"a\" when true => 1; fn reward(facts) { facts.laser.right * 2 }");
-    assert_eq!(judge.judge().unwrap(), Judgement { reward: 5.0, recover: false });
+    assert_eq!(judge.judge().unwrap(), Judgement { reward: 5.0, then: None });
     assert_eq!(judge.fired(), [Some(1.0), Some(4.0)]);
 }
 
@@ -98,7 +99,7 @@ fn the_reward_function_adds_to_the_rules() {
 fn the_reward_function_may_ask_for_recovery() {
     let mut judge = judge("fn reward(facts) { #{ value: -1, recover: facts.robot.contact } }");
     judge.facts_mut().contact = true;
-    assert_eq!(judge.judge().unwrap(), Judgement { reward: -1.0, recover: true });
+    assert_eq!(judge.judge().unwrap(), Judgement { reward: -1.0, then: Some(Then::Recover) });
 }
 
 #[test]

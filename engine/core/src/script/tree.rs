@@ -2,6 +2,7 @@
 
 use super::refused;
 use super::source::Code;
+use super::success;
 use crate::diagnostic::{Diagnostic, Kind, Mistakes};
 use crate::judge::explain;
 use crate::judge::fact_table::GROUPS;
@@ -46,6 +47,9 @@ pub(super) fn tree(engine: &mut Engine, code: &Code, mistakes: &mut Mistakes) ->
     let mut scope = Scope::new();
     for name in GROUPS.iter().map(|(group, _)| *group).chain(["facts", "calibrated"]) {
         scope.push(name, ());
+    }
+    if success::is_asked_for(code) {
+        scope.push("test", ()).push("untrained", ());
     }
     for name in &variables {
         scope.push(name.as_str(), ());

@@ -2,6 +2,8 @@
 
 use crate::geometry::{Point2, Pose, wrap_angle};
 
+/// How far from a route is still on it where the world file does not say, metres.
+const HALF_WIDTH_M: f64 = 1.0;
 /// A corner is rounded by pieces that turn at most this much.
 const PIECE_RAD: f64 = 5.0 * std::f64::consts::PI / 180.0;
 
@@ -12,6 +14,8 @@ pub struct Route {
     pub name: String,
     /// Whether its end is joined to its beginning.
     pub closed: bool,
+    /// How far from it is still on it, metres.
+    pub half_width_m: f64,
     points: Vec<Point2>,
     segments: Vec<Segment>,
     length_m: f64,
@@ -42,7 +46,7 @@ impl Route {
             segments.push(Segment { from: *from, direction, length_m: length, start_m: length_m, yaw_rad });
             length_m += length;
         }
-        Self { name: name.into(), closed, points, segments, length_m }
+        Self { name: name.into(), closed, half_width_m: HALF_WIDTH_M, points, segments, length_m }
     }
 
     /// The points in order; the first is not repeated at the end of a closed route.

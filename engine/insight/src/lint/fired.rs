@@ -24,7 +24,7 @@ pub(super) fn check_firing(plan: &Plan, trial: &LintTrial, exploits: &Exploits, 
         }
         let seen = &trial.rules[index];
         let needed = u64::from(judge.held(index).1);
-        let fixed = plan.behaviour.fixed_value(index).is_some() || rule.recover;
+        let fixed = plan.behaviour.fixed_value(index).is_some() || rule.then.is_some();
         let found = match () {
             () if seen.fired == 0 => never(plan, index, seen, needed, trial.steps()),
             () if needed == 1 && fixed && seen.reached >= ENOUGH && seen.fired == seen.reached => {
@@ -90,8 +90,9 @@ fn never(plan: &Plan, index: usize, seen: &RuleTrial, needed: u64, steps: u64) -
 /// Whether an earlier rule that recovers does just the same: then it does not matter which of the two fires.
 fn has_a_twin(plan: &Plan, index: usize) -> bool {
     let (rules, value) = (&plan.behaviour.outline().rules, plan.behaviour.fixed_value(index));
-    let same = |earlier: usize| rules[earlier].recover && plan.behaviour.fixed_value(earlier) == value;
-    rules[index].recover && value.is_some() && (0..index).any(same)
+    let same =
+        |earlier: usize| rules[earlier].then == rules[index].then && plan.behaviour.fixed_value(earlier) == value;
+    rules[index].then.is_some() && value.is_some() && (0..index).any(same)
 }
 
 fn always(plan: &Plan, index: usize, seen: &RuleTrial) -> Finding {

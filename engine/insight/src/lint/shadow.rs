@@ -12,7 +12,7 @@ pub(super) fn check_shadows(plan: &Plan, findings: &mut Vec<Finding>) {
     for (index, rule) in outline.rules.iter().enumerate() {
         let earlier = outline.rules[..index].iter().enumerate().find(|(before, earlier)| {
             let sooner = judge.held(*before).1 <= judge.held(index).1;
-            earlier.recover && sooner && implies(&rule.condition, &earlier.condition)
+            earlier.then.is_some() && sooner && implies(&rule.condition, &earlier.condition)
         });
         let Some((before, _)) = earlier else { continue };
         let (name, first) = (printable(&rules[index].name), printable(&rules[before].name));

@@ -166,14 +166,14 @@ pub(super) fn drive(
 ) -> Result<TrialDrive> {
     let mut plan = plan.clone();
     plan.settings.run.test_steps = steps;
-    let recovers: Vec<bool> = plan.behaviour.outline().rules.iter().map(|rule| rule.recover).collect();
+    let recovers: Vec<bool> = plan.behaviour.outline().rules.iter().map(|rule| rule.then.is_some()).collect();
     let mut rules = vec![RuleTrial::default(); plan.behaviour.rules().len()];
     let mut kept: Vec<TrialStep> = Vec::with_capacity(steps as usize);
     let mut watch = Each(|cycle: &Cycle<_>, step: &Step| {
         if let Some(last) = kept.last_mut() {
             last.next = Some(step.state);
         }
-        let Step { state, action, reward, recover, .. } = *step;
+        let (Step { state, action, reward, .. }, recover) = (*step, step.then.is_some());
         kept.push(TrialStep { state, action, reward, recover, next: None });
         look(cycle, recover, &recovers, &mut rules);
     });
@@ -224,14 +224,14 @@ fn learning(plan: &Plan, stop: &AtomicBool) -> Result<(Vec<TrialStep>, Vec<RuleT
     let mut ledger = Ledger::new(&plan, LEARNING_STEPS);
     let learned = learn_into(&plan, SEED, stop, &|_| (), &mut ledger)?;
     let mut rules = vec![RuleTrial::default(); plan.behaviour.rules().len()];
-    let recovers: Vec<bool> = plan.behaviour.outline().rules.iter().map(|rule| rule.recover).collect();
+    let recovers: Vec<bool> = plan.behaviour.outline().rules.iter().map(|rule| rule.then.is_some()).collect();
     let mut steps: Vec<TrialStep> = Vec::with_capacity(ledger.len());
     for (index, record) in ledger.records().enumerate() {
         let (state, action) = (record.state as usize, usize::from(record.action));
         if let Some(last) = steps.last_mut() {
             last.next = Some(state);
         }
-        steps.push(TrialStep { state, action, reward: record.reward, recover: record.recover, next: None });
+        steps.push(TrialStep { state, action, reward: record.reward, recover: record.then.is_some(), next: None });
         let mut asked = rules.len();
         for (rule, value) in ledger.fired(index) {
             rules[rule].fire(value);

@@ -5,8 +5,11 @@ use serde::Serialize;
 use super::shot::Shot;
 use super::track::{Moments, ScanShape, Track, TrackSource};
 use engine::diagnostic::Result;
-use engine::experiment::{Ledger, Phase, Plan, Tally, TestFigures, learned_at};
+use engine::experiment::{Ledger, Phase, Plan, Tally};
 use engine::learner::Policy;
+use engine::verdict::{ConditionVerdict, TestFigures, Verdict};
+
+use crate::verdict_words::{figures, headline};
 
 /// The most states of a seed in a document.
 const MOST_STATES: usize = 256;
@@ -22,6 +25,8 @@ pub struct SeedData<'a> {
     pub policy: Option<&'a Policy>,
     /// The test's figures, once it is done.
     pub test: Option<&'a TestFigures>,
+    /// Those of a robot that knows nothing.
+    pub untrained: Option<&'a TestFigures>,
     /// Steps of learning.
     pub learning: &'a Ledger,
     /// Steps of the test.
@@ -35,7 +40,7 @@ pub struct SeedView {
     pub seed: u64,
     /// Whether the page begins with it.
     pub shown_first: bool,
-    /// The first step from which four windows have a reinforcement of -1 or better.
+    /// The first step from which four windows in a row are good.
     pub learned_at: Option<u64>,
     /// Reinforcement of each window.
     pub curve: Vec<f64>,
@@ -43,6 +48,8 @@ pub struct SeedView {
     pub by_rule: Vec<Vec<f64>>,
     /// The test's figures.
     pub test: Option<TestFigures>,
+    /// Whether the test is a success, in words; null until it is done.
+    pub verdict: Option<VerdictView>,
     /// How many states were met.
     pub states_met: usize,
     /// The states that were met, by number; if there are very many, the most visited.
@@ -51,6 +58,46 @@ pub struct SeedView {
     pub learning: Option<Track>,
     /// Steps of the test; null if this document leaves them out, or the test is not done.
     pub tested: Option<Track>,
+}
+
+/// A verdict in words.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct VerdictView {
+    /// Null where it cannot be told.
+    pub success: Option<bool>,
+    /// Whether, and why.
+    pub text: String,
+    /// Each condition: its name, what must hold, whether it does, and by which figures.
+    pub conditions: Vec<ConditionView>,
+}
+
+/// A condition of success in words.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ConditionView {
+    /// Its name.
+    pub name: String,
+    /// What must hold.
+    pub condition: String,
+    /// Whether it does.
+    pub holds: bool,
+    /// Its figures beside those of a robot that knows nothing.
+    pub figures: String,
+}
+
+impl From<&Verdict> for VerdictView {
+    fn from(verdict: &Verdict) -> Self {
+        let condition = |condition: &ConditionVerdict| ConditionView {
+            name: condition.name.clone(),
+            condition: condition.condition.clone(),
+            holds: condition.holds,
+            figures: figures(condition),
+        };
+        Self {
+            success: verdict.success,
+            text: headline(verdict),
+            conditions: verdict.conditions.iter().map(condition).collect(),
+        }
+    }
 }
 
 /// One state of the learned table.
@@ -82,10 +129,14 @@ impl SeedView {
         Ok(Self {
             seed: data.seed,
             shown_first: false,
-            learned_at: learned_at(&curve),
+            learned_at: data.tally.and_then(|tally| plan.success().learned_at(&tally.counts())),
             by_rule: data.tally.map_or_else(Vec::new, |tally| windows.map(|at| by_rule(plan, tally, at)).collect()),
             curve,
             test: data.test.cloned(),
+            verdict: data
+                .test
+                .zip(data.untrained)
+                .map(|(test, untrained)| VerdictView::from(&plan.success().verdict(test, untrained))),
             states_met: data.policy.map_or(0, |policy| policy.rows().iter().flatten().count()),
             states: data.policy.map_or(Ok(Vec::new()), |policy| states(plan, policy, brings_steps))?,
             learning: None,

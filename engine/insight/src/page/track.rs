@@ -170,7 +170,7 @@ impl Columns {
         self.state.extend(record.state.to_le_bytes());
         self.next_state.extend(record.next_state.to_le_bytes());
         self.action.push(record.action as u8);
-        let flags = [record.recover, record.contact, record.fallen, record.explored];
+        let flags = [record.then.is_some(), record.contact, record.fallen, record.explored];
         self.flags.push(flags.iter().enumerate().fold(0, |set, (bit, flag)| set | u8::from(*flag) << bit));
         self.reward.extend((record.reward as f32).to_le_bytes());
         let from = self.fired.len();
@@ -246,7 +246,7 @@ fn wanted(ledger: &Ledger, shots: usize) -> Vec<usize> {
     };
     let all: Vec<usize> = (0..played).collect();
     let rewarded: Vec<usize> = (0..played)
-        .filter(|step| ledger.record(*step).is_some_and(|record| record.recover || record.contact))
+        .filter(|step| ledger.record(*step).is_some_and(|record| record.then.is_some() || record.contact))
         .collect();
     let mut wanted = evenly(&rewarded, shots / 2);
     wanted.extend(evenly(&all, shots - wanted.len()));

@@ -1,6 +1,9 @@
 //! Figures of runs and tests, for people.
 
-use engine::experiment::{CombinationFigures, MemberFigures, Spread, Summary, TestFigures};
+use engine::diagnostic::printable;
+use engine::experiment::{CombinationFigures, MemberFigures, Plan, Spread, Summary};
+use engine::verdict::{TestFigures, Verdict, Why};
+use insight::verdict_words::{figures, headline, learned, spread_of_figures, tells_learning};
 
 use crate::console::{Console, ConsoleError};
 
@@ -11,39 +14,74 @@ type Printed = Result<(), ConsoleError>;
 
 /// A seed on one line.
 pub(super) fn one_line(summary: &Summary) -> String {
-    let learned = summary.learned_at.map_or("not learned".to_owned(), |step| format!("learned at step {step}"));
+    let success = match summary.verdict.success {
+        Some(true) => "success",
+        Some(false) => "no success",
+        None => "success cannot be told",
+    };
+    let learned = match (&summary.combination, summary.learned_at) {
+        (Some(_), _) => String::new(),
+        (None, Some(step)) => format!(", learned at step {step}"),
+        (None, None) => ", not learned".to_owned(),
+    };
     let laps = summary.test.laps.map_or(String::new(), |laps| format!(", {laps:.1} laps"));
-    format!("{learned}; test: {:.1} failures in 1000 steps{laps}", summary.test.failures_per_1000)
+    format!("{success}{learned}; {:.1} failures in 1000 steps{laps}", summary.test.failures_per_1000)
 }
 
 /// One seed of a run.
-pub(super) fn print_one(console: &mut Console, summary: &Summary) -> Printed {
-    let Summary { behaviour, world, seed, steps, steps_per_second, test, .. } = summary;
+pub(super) fn print_one(console: &mut Console, plan: &Plan, summary: &Summary) -> Printed {
+    let Summary { behaviour, world, seed, steps_per_second, test, untrained, verdict, .. } = summary;
     console.line(&format!("behaviour: {behaviour} in {world}, seed {seed}, {steps_per_second} steps per second"))?;
+    print_verdict(console, verdict)?;
     match &summary.combination {
         Some(combination) => print_combination(console, combination)?,
-        None => {
-            let learned = match summary.learned_at {
-                Some(step) => format!("at step {step} of {steps} (four windows of 400 steps with -1 or better)"),
-                None => format!("not within {steps} steps (no four windows of 400 steps with -1 or better)"),
-            };
-            console.line(&format!("learned:   {learned}"))?;
-        }
+        None => console.line(&format!("learned:   {}", learned(tells_learning(plan), summary)))?,
     }
-    print_figures(console, test)
+    print_figures(console, test, untrained)
+}
+
+/// Whether a test is a success, and by which figures.
+pub(super) fn print_verdict(console: &mut Console, verdict: &Verdict) -> Printed {
+    console.line(&format!("success:   {}", headline(verdict)))?;
+    let name = |name: &str| printable(name);
+    let width = verdict.conditions.iter().map(|condition| name(&condition.name).chars().count()).max().unwrap_or(0);
+    for condition in &verdict.conditions {
+        let holds = if condition.holds { "holds" } else { "fails" };
+        console.line(&format!("  {holds}  {:width$}  {}", name(&condition.name), figures(condition)))?;
+    }
+    Ok(())
 }
 
 /// Many seeds of a run.
 pub(super) fn print_many(console: &mut Console, spread: &Spread) -> Printed {
     let count = spread.seeds.len();
+    let share = |part: usize| format!("{part} of {count} seeds ({:.0} %)", 100.0 * part as f64 / count as f64);
     console.line(&format!("behaviour: {} in {}, {count} seeds", spread.behaviour, spread.world))?;
+    match spread.seeds.first().map(|seed| &seed.verdict) {
+        Some(verdict) if verdict.conditions.is_empty() => {
+            console.line(&format!("success:   {}", headline(verdict)))?;
+        }
+        _ => console.line(&format!("success:   {}", share(spread.successes)))?,
+    }
+    let width = spread.conditions.iter().map(|condition| printable(&condition.name).chars().count()).max().unwrap_or(0);
+    for condition in &spread.conditions {
+        let name = printable(&condition.name);
+        console.line(&format!(
+            "  {:>3} of {count}  {name:width$}  {}",
+            condition.held,
+            spread_of_figures(condition)
+        ))?;
+    }
+    let untold = spread.seeds.iter().filter(|seed| seed.verdict.why == Why::UntrainedToo).count();
+    if untold > 0 {
+        console.line(&format!(
+            "warning:   with {untold} of {count} seeds a robot that knows nothing meets every condition too"
+        ))?;
+    }
     let combined = spread.seeds.iter().any(|seed| seed.combination.is_some());
-    console.line(&format!(
-        "{}   {} of {count} seeds ({:.0} %)",
-        if combined { "good:   " } else { "learned:" },
-        spread.converged,
-        100.0 * spread.converged as f64 / count as f64
-    ))?;
+    if !combined {
+        console.line(&format!("learned:   {}", share(spread.converged)))?;
+    }
     console.line("                        median     worst")?;
     let step = |step: Option<u64>| step.map_or("never".to_owned(), |step| step.to_string());
     let (median, worst) = (&spread.median, &spread.worst);
@@ -53,6 +91,9 @@ pub(super) fn print_many(console: &mut Console, spread: &Spread) -> Printed {
         row("learned at step", step(median.learned_at), step(worst.learned_at))?;
     }
     row("failures per 1000", format!("{:.1}", median.failures_per_1000), format!("{:.1}", worst.failures_per_1000))?;
+    if let (Some(median), Some(worst)) = (median.goals_share, worst.goals_share) {
+        row("goals, % of attempts", format!("{:.0}", 100.0 * median), format!("{:.0}", 100.0 * worst))?;
+    }
     if let (Some(median), Some(worst)) = (median.laps, worst.laps) {
         row("laps", format!("{median:.1}"), format!("{worst:.1}"))?;
     }
@@ -60,13 +101,7 @@ pub(super) fn print_many(console: &mut Console, spread: &Spread) -> Printed {
         row("distance to prey, m", format!("{median:.2}"), format!("{worst:.2}"))?;
     }
     row("contacts", format!("{:.0}", median.contacts), format!("{:.0}", worst.contacts))?;
-    row("spinning, %", format!("{:.0}", 100.0 * median.spinning), format!("{:.0}", 100.0 * worst.spinning))?;
-    let lost = spread.seeds.iter().filter(|seed| seed.test.does_task == Some(false)).count();
-    if lost > 0 {
-        console
-            .line(&format!("{lost} of {count} seeds avoid punishment but make less than 0.1 m/s along the route"))?;
-    }
-    Ok(())
+    row("spinning, %", format!("{:.0}", 100.0 * median.spinning), format!("{:.0}", 100.0 * worst.spinning))
 }
 
 /// Who decided, and where the policies disagree.
@@ -99,23 +134,33 @@ pub(super) fn print_combination(console: &mut Console, figures: &CombinationFigu
 }
 
 /// The figures of a test for a person, and in words what a reward cannot see.
-pub(crate) fn print_figures(console: &mut Console, test: &TestFigures) -> Printed {
+pub(crate) fn print_figures(console: &mut Console, test: &TestFigures, untrained: &TestFigures) -> Printed {
     console.line(&format!(
-        "test:      {} steps, {} ({:.1} per 1000), {}, {:.2} m/s",
+        "test:      {} steps, {} ({:.1} per 1000, untrained {:.1}), {}, {:.2} m/s",
         test.steps,
         counted(test.failures, "failure"),
         test.failures_per_1000,
+        untrained.failures_per_1000,
         counted(test.contacts, "contact"),
         test.mean_speed
     ))?;
-    if test.goals > 0 {
-        let all = test.goals + test.failures;
-        let share = 100.0 * test.goals as f64 / all as f64;
-        console.line(&format!("goals:     {} of {all} attempts ({share:.0} %)", test.goals))?;
+    if test.goals + test.restarts > 0 {
+        let restarts =
+            if test.restarts > 0 { format!("; {}", counted(test.restarts, "restart")) } else { String::new() };
+        console.line(&format!(
+            "goals:     {} of {} ({:.0} %, untrained {:.0} %){restarts}",
+            test.goals,
+            counted(test.attempts(), "attempt"),
+            100.0 * test.goal_rate,
+            100.0 * untrained.goal_rate
+        ))?;
     }
     if let (Some(laps), Some(net_m)) = (test.laps, test.net_route_m) {
-        console
-            .line(&format!("route:     {laps:.1} laps, {net_m:.0} m net along it; {:.0} m driven", test.distance_m))?;
+        console.line(&format!(
+            "route:     {laps:.1} laps, {net_m:.0} m net along it; {:.0} m driven, {:.0} % of the steps off it",
+            test.distance_m,
+            100.0 * test.off_route.unwrap_or(0.0)
+        ))?;
     }
     if let Some(distance_m) = test.prey_distance_m {
         console.line(&format!("prey:      median distance {distance_m:.2} m"))?;
@@ -124,9 +169,6 @@ pub(crate) fn print_figures(console: &mut Console, test: &TestFigures) -> Printe
     let habits: Vec<_> = habits.iter().filter(|(_, share)| *share > 0.02).collect();
     for (habit, share) in habits {
         console.line(&format!("warning:   {habit} {:.0} % of the time", 100.0 * share))?;
-    }
-    if test.does_task == Some(false) {
-        console.line("warning:   it avoids punishment, but makes less than 0.1 m/s along the route")?;
     }
     Ok(())
 }

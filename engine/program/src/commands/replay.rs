@@ -165,7 +165,7 @@ fn rules(plan: &Plan, phase: Phase, ledger: &Ledger) -> Vec<RuleScoreEntry> {
 }
 
 fn entry(plan: &Plan, ledger: &Ledger, step: usize) -> Option<StepEntry> {
-    let Record { state, next_state, action, reward, recover, explored, contact, beam, nearest_m, pose, .. } =
+    let Record { state, next_state, action, reward, then, explored, contact, beam, nearest_m, pose, .. } =
         ledger.record(step)?;
     let twist = plan.settings.actions.get(usize::from(action))?;
     let name = |rule: usize| plan.behaviour.rules()[rule].name.clone();
@@ -178,7 +178,7 @@ fn entry(plan: &Plan, ledger: &Ledger, step: usize) -> Option<StepEntry> {
         next_state,
         reward,
         rules: ledger.fired(step).map(|(rule, value)| (name(rule), value)).collect(),
-        recover,
+        recover: then.is_some(),
         explored,
         contact,
         beam,

@@ -38,13 +38,13 @@ pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::resul
     }
     let good = if let [result] = results.as_slice() {
         console.json(&result.run.summary)?;
-        print_one(console, &result.run.summary)?;
-        result.run.summary.is_good()
+        print_one(console, &plan, &result.run.summary)?;
+        result.run.summary.verdict.is_success()
     } else {
         let spread = Spread::new(results.iter().map(|result| result.run.summary.clone()).collect());
         console.json(&spread)?;
         print_many(console, &spread)?;
-        2 * spread.seeds.iter().filter(|seed| seed.is_good()).count() > spread.seeds.len()
+        2 * spread.successes > spread.seeds.len()
     };
     if let Some(report) = &checked {
         check::print_short(console, report)?;

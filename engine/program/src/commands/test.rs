@@ -3,17 +3,28 @@
 use std::sync::atomic::Ordering;
 
 use engine::diagnostic::Diagnostic;
-use engine::experiment::{CertaintyGrid, Decider, Overrides};
+use engine::experiment::{CertaintyGrid, Decider, Overrides, test_untrained};
 use engine::filter::Sources;
+use engine::verdict::{TestFigures, Verdict};
 use insight::folder::TestFolder;
 use insight::store::StoredRun;
 use pack::{Evidence, Pack, Runnable};
+use serde::Serialize;
 
-use super::print::{print_combination, print_figures};
+use super::print::{print_combination, print_figures, print_verdict};
 use super::sources::{catalogue, sources};
 use super::stop::{INTERRUPTED, on_ctrl_c};
 use crate::cli::TestArguments;
 use crate::console::{Console, ConsoleError};
+
+/// What is printed as JSON: the figures as they stand in `figures.json`, and the verdict on them.
+#[derive(Serialize)]
+struct TestReport<'a> {
+    #[serde(flatten)]
+    figures: &'a TestFigures,
+    untrained: &'a TestFigures,
+    verdict: &'a Verdict,
+}
 
 pub(crate) fn run(arguments: &TestArguments, console: &mut Console) -> Result<u8, ConsoleError> {
     let (world, set) = (arguments.world.clone(), arguments.set.clone());
@@ -33,17 +44,20 @@ pub(crate) fn run(arguments: &TestArguments, console: &mut Console) -> Result<u8
     if let Some(out) = &arguments.out {
         TestFolder::create(out)?.write(&plan, &tested, map.as_ref())?;
     }
-    console.json(&tested.figures)?;
+    let untrained = test_untrained(&plan, test_seed, &stop)?;
+    let verdict = plan.success().verdict(&tested.figures, &untrained);
+    console.json(&TestReport { figures: &tested.figures, untrained: &untrained, verdict: &verdict })?;
     let how = if plan.learns() { "learned" } else { "combined" };
     console.line(&format!("behaviour: {} in {}, {how} with seed {seed}", plan.behaviour.name(), plan.layout.name))?;
     if let Some(combination) = &tested.combination {
         print_combination(console, &combination.figures)?;
     }
-    print_figures(console, &tested.figures)?;
+    print_verdict(console, &verdict)?;
+    print_figures(console, &tested.figures, &untrained)?;
     if stop.load(Ordering::Relaxed) {
         return Ok(INTERRUPTED);
     }
-    Ok(u8::from(tested.figures.does_task == Some(false)))
+    Ok(u8::from(!verdict.is_success()))
 }
 
 /// What a pack carries: its policy, under the seed that learned it, or the policies that it combines.

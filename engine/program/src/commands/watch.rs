@@ -90,15 +90,17 @@ fn finished(out: std::path::PathBuf) -> watch::Finished {
         let (plan, many) = (&run.plan, run.seeds.len() > 1);
         let seeds: Vec<u64> = run.seeds.iter().map(|seed| seed.seed).collect();
         let folder = RunFolder::create(&out, plan, &seeds)?;
-        let result = |(seed, tested): (&watch::WatchedSeed, engine::experiment::TestRun)| {
+        let mut results = Vec::new();
+        for (seed, tested) in run.seeds.iter().zip(tests) {
+            // A finished run has it.
+            let Some(untrained) = &seed.untrained else { continue };
             let log = RunLog { learning: (*seed.learning).clone(), test: seed.tested.clone() };
             let learned = seed.learned.as_deref().cloned();
-            let mut run = SeedRun::new(plan, seed.seed, learned, tested, &log);
-            run.summary = run.summary.timed(seconds / seeds.len() as f64);
+            let mut one = SeedRun::new(plan, seed.seed, learned, tested, untrained, &log);
+            one.summary = one.summary.timed(seconds / seeds.len() as f64);
             folder.keep_log(plan, seed.seed, &log)?;
-            Ok(SeedResult { run, log: (!many).then_some(log) })
-        };
-        let results = run.seeds.iter().zip(tests).map(result).collect::<engine::diagnostic::Result<Vec<_>>>()?;
+            results.push(SeedResult { run: one, log: (!many).then_some(log) });
+        }
         folder.write(plan, &results, None)
     })
 }

@@ -9,7 +9,8 @@ use super::keys::KEYS;
 use super::lines::{ends, heading, write, write_all};
 use super::view::{SPEEDS, View};
 use super::words::{columns, fit, signed};
-use engine::experiment::{Phase, learned_at};
+use crate::board::WatchedSeed;
+use engine::experiment::Phase;
 use insight::words::{typeset, whole};
 
 /// Columns of the keys that are always named: help and quit.
@@ -42,9 +43,11 @@ fn status(view: &View, width: usize) -> Line<'static> {
 
 fn figures(view: &View, wide: bool) -> Vec<Span<'static>> {
     let (Some(shown), Some(seed)) = (&view.shown.run, view.seed_run()) else { return Vec::new() };
-    let learned = |curve: Vec<f64>| learned_at(&curve);
-    let count = shown.run.seeds.iter().filter(|seed| learned(seed.curve()).is_some()).count();
-    let own = match learned(seed.curve()) {
+    let success = shown.run.plan.success();
+    let learned =
+        |seed: &WatchedSeed| seed.learned.as_ref().and_then(|learned| success.learned_at(&learned.tally.counts()));
+    let count = shown.run.seeds.iter().filter(|seed| learned(seed).is_some()).count();
+    let own = match learned(seed) {
         Some(step) if wide => format!("learned at step {}", whole(step)),
         Some(step) => format!("at step {}", whole(step)),
         None => "not learned".to_owned(),
@@ -120,7 +123,7 @@ fn moment(view: &View) -> Vec<Span<'static>> {
         Span::styled(" · reward ", TerminalInk::quiet()),
         Span::raw(signed(record.reward)),
     ];
-    for (event, word) in [(record.contact, "contact"), (record.fallen, "fallen"), (record.recover, "recovers")] {
+    for (event, word) in [(record.contact, "contact"), (record.fallen, "fallen"), (record.then.is_some(), "recovers")] {
         if event {
             spans.extend([Span::styled(" · ", TerminalInk::quiet()), Span::styled(word, view.ink.bad())]);
         }

@@ -88,7 +88,7 @@ fn events(record: &Record) -> String {
     let all = [
         (record.contact, "contact"),
         (record.fallen, "fallen"),
-        (record.recover, "recovery follows"),
+        (record.then.is_some(), "recovery follows"),
         (record.explored, "explored"),
     ];
     let words: Vec<&str> = all.into_iter().filter(|(is, _)| *is).map(|(_, word)| word).collect();

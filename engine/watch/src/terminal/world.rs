@@ -113,7 +113,7 @@ fn trail(view: &View, map: &Map, dots: &mut Dots) {
         // Where it was lately counts more.
         let old = view.step - step > TRAIL_STEPS / 2;
         let style = if old { view.ink.accent().patch(TerminalInk::quiet()) } else { view.ink.accent() };
-        if let Some(last) = last.filter(|last| !last.recover) {
+        if let Some(last) = last.filter(|last| last.then.is_none()) {
             let (from, to) = (map.at((last.pose.x_m, last.pose.y_m)), map.at((record.pose.x_m, record.pose.y_m)));
             dots.line(from, to, None, Rank::Line, style);
         }

@@ -93,6 +93,15 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          A script is a short text file that ends in .rhai.",
     ),
     (
+        "E-SCRIPT-SUCCESS",
+        Kind::Input,
+        "A condition of success cannot be understood, or asks for a figure that the world does not have.\n\
+         It compares figures of the frozen policy's test: success \"drives round\" when test.laps >= 5; figures of a robot \
+         that knows nothing stand behind untrained. What a step measures, such as laser.front, is not known there. \
+         scripts/README.md lists every figure; laps and other figures of the route need a [[route]] named \"lap\" in the \
+         world file.",
+    ),
+    (
         "E-SCRIPT-SYNTAX",
         Kind::Input,
         "The script cannot be read as a program: something is missing, or stands where it has no meaning.\n\

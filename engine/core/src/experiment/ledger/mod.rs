@@ -172,7 +172,7 @@ impl Ledger {
             state: step.state as u32,
             next_state: step.next_state as u32,
             action: step.action as u16,
-            recover: step.recover,
+            then: step.then,
             contact: step.contact,
             fallen: facts.fallen,
             explored: step.explored,

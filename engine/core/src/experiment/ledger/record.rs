@@ -2,6 +2,7 @@
 
 use crate::experiment::Plan;
 use crate::geometry::Pose;
+use crate::outcome::{Ending, Then};
 
 /// Bytes of a record before the words of the rules.
 pub(super) const FIXED_BYTES: usize = 72;
@@ -24,6 +25,8 @@ const FIELDS: &[(usize, &str)] = &[
     (FIXED_BYTES, "values of the rules"),
 ];
 const NO_BEAM: u16 = u16::MAX;
+/// Of the flags, the lower of the two bits that hold the word after `then`: its number in [`Then::ALL`].
+const THEN_BIT: u16 = 5;
 
 /// One step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,8 +45,8 @@ pub struct Record {
     pub next_state: u32,
     /// The action.
     pub action: u16,
-    /// The script asked for recovery: the next step begins somewhere else.
-    pub recover: bool,
+    /// What the script said if the attempt ended: the next step begins somewhere else.
+    pub then: Option<Then>,
     /// The body touched something.
     pub contact: bool,
     /// The robot lost its footing.
@@ -99,10 +102,18 @@ impl RecordShape {
 }
 
 impl Record {
+    /// How the attempt ended, if it did.
+    #[must_use]
+    pub fn ending(&self) -> Option<Ending> {
+        self.then.map(|then| then.ending(self.reward))
+    }
+
     pub(super) fn to_bytes(self) -> [u8; FIXED_BYTES] {
         let prey = self.prey.unwrap_or_default();
-        let flags = [self.recover, self.contact, self.fallen, self.explored, self.prey.is_some()];
+        let flags = [self.then.is_some(), self.contact, self.fallen, self.explored, self.prey.is_some()];
         let flags = flags.iter().enumerate().fold(0_u16, |set, (bit, flag)| set | u16::from(*flag) << bit);
+        let word = Then::ALL.iter().position(|(_, then)| Some(*then) == self.then).unwrap_or(0) as u16;
+        let flags = flags | word << THEN_BIT;
         let mut bytes = [0; FIXED_BYTES];
         let wide = [self.reward, self.pose.x_m, self.pose.y_m, self.pose.yaw_rad].map(f64::to_le_bytes);
         bytes[0..32].copy_from_slice(wide.as_flattened());
@@ -131,7 +142,7 @@ impl Record {
             state: u32::from_le_bytes(states[0]),
             next_state: u32::from_le_bytes(states[1]),
             action,
-            recover: flag(0),
+            then: flag(0).then(|| Then::ALL[usize::from(flags >> THEN_BIT & 3)].1),
             contact: flag(1),
             fallen: flag(2),
             explored: flag(3),

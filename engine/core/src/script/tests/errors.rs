@@ -137,8 +137,17 @@ fn reward_and_calibrate_take_one_argument() {
 
 #[test]
 fn a_reward_that_is_no_number_is_an_error() {
-    for body in ["\"bad\"", "", "true", "#{ value: 1, recovery: true }", "#{ recover: true }"] {
-        expect(&format!("fn reward(facts) {{ {body} }}"), "E-REWARD-VALUE", "reward", "recover");
+    let both = "#{ value: 1, recover: true, then: \"goal\" }";
+    for body in [
+        "\"bad\"",
+        "",
+        "true",
+        "#{ value: 1, recovery: true }",
+        "#{ recover: true }",
+        "#{ value: 1, then: \"stop\" }",
+        both,
+    ] {
+        expect(&format!("fn reward(facts) {{ {body} }}"), "E-REWARD-VALUE", "reward", "then: \"fail\"");
     }
     let mut judge = super::judge("fn reward(facts) { ln(facts.laser.right - 2.0) }");
     let wrong = judge.judge().unwrap_err();

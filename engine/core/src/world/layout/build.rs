@@ -319,7 +319,9 @@ impl<'a> Builder<'a> {
             .at(self.source, written[corner].1.clone(), "at this corner")
             .help(format!("there is room for {:.3} m", (greatest * 1000.0).floor() / 1000.0))
         })?;
-        Ok(Route::new(name, points, closed))
+        let mut route = Route::new(name, points, closed);
+        route.half_width_m = row.number("half_width_m").unwrap_or(route.half_width_m);
+        Ok(route)
     }
 
     fn movers(&mut self, file: &FileRow, routes: &[Route]) -> Vec<Mover> {

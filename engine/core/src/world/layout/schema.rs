@@ -114,6 +114,7 @@ const ROUTE: &[FileKey] = &[
     must("points_m", "metres", KeyForm::Points(2)),
     CLOSED,
     may("corner_radius_m", "metres", KeyForm::Number(0.0, FAR)),
+    may("half_width_m", "metres", KeyForm::Number(0.05, FAR)),
 ];
 const MOVER_BOX: &[FileKey] =
     &[must("centre_m", "metres", KeyForm::Numbers(3, -FAR, FAR)), must("size_m", "metres", SIZE), YAW, MATERIAL];

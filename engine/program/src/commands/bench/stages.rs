@@ -177,7 +177,7 @@ fn record(plan: &Plan) -> Result<Vec<Situation>> {
                 state: step.next_state,
             });
         }
-        if step.recover {
+        if step.then.is_some() {
             cycle.recover()?;
         }
     }

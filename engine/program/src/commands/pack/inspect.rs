@@ -73,10 +73,17 @@ pub(super) fn print_evidence(console: &mut Console, manifest: &Manifest) -> std:
             None if *steps == 0 => "combined".to_owned(),
             None => "not learned".to_owned(),
         };
+        let success = match claim.success {
+            Some(true) => "success, ",
+            Some(false) => "no success, ",
+            None => "",
+        };
+        let untrained = claim.untrained_failures_per_1000;
+        let untrained = untrained.map_or(String::new(), |failures| format!(" (untrained {failures:.1})"));
         let laps = claim.laps.map_or(String::new(), |laps| format!(", {laps:.1} laps"));
         let (seed, failures, contacts) = (claim.seed, claim.failures_per_1000, claim.contacts);
         console.line(&format!(
-            "  seed {seed}: {learned}; test: {failures:.1} failures in 1000 steps, contacts: {contacts}{laps}"
+            "  seed {seed}: {success}{learned}; test: {failures:.1} failures in 1000 steps{untrained}, contacts: {contacts}{laps}"
         ))?;
     }
     Ok(())

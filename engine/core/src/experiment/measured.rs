@@ -1,0 +1,57 @@
+//! The figures of a test, from what was counted and from the truth.
+
+use super::summary::rule_totals;
+use super::truth::{Spells, Truth};
+use super::{Plan, Tally};
+use crate::stats::Sorted;
+use crate::verdict::TestFigures;
+
+/// Half of the paper's cruising speed, net along the route, m/s.
+const TASK_SPEED_M_PER_S: f64 = 0.1;
+
+/// What was counted in so many steps, and what the truth says; a robot that does not know where it is has gone nowhere.
+/// `goals_steps` are the lengths of the attempts that reached their goals.
+pub(super) fn figures(
+    plan: &Plan,
+    steps: u64,
+    tally: &Tally,
+    goals_steps: &[u32],
+    truth: Option<&Truth>,
+) -> TestFigures {
+    let period_s = plan.settings.run.period_s;
+    let seconds = (steps as f64 * period_s).max(f64::MIN_POSITIVE);
+    let lap_m = plan.layout.lap.map(|lap| plan.layout.routes[lap].length_m());
+    let per_1000 = |count: f64| count * 1000.0 / steps.max(1) as f64;
+    let spells = truth.map_or_else(Spells::default, |truth| truth.spells);
+    let share = |count: u64| count as f64 / spells.all.max(1) as f64;
+    let net_route_m = truth.and_then(Truth::net_m);
+    let distance_m = truth.map_or(0.0, |truth| truth.distance_m);
+    let along = truth.and_then(|truth| truth.along.as_ref());
+    let prey_m = truth.map_or(&[][..], |truth| &truth.prey_m);
+    let endings = tally.endings();
+    TestFigures {
+        steps,
+        failures: endings.failures,
+        goals: endings.goals,
+        restarts: endings.restarts,
+        failures_per_1000: per_1000(endings.failures as f64),
+        goal_rate: endings.goals as f64 / endings.attempts().max(1) as f64,
+        goal_s: goals_steps.iter().map(|steps| f64::from(*steps) * period_s).collect::<Sorted>().upper_median(),
+        reinforcement_per_1000: per_1000(tally.curve().iter().sum()),
+        distance_m,
+        net_route_m,
+        laps: net_route_m.zip(lap_m).map(|(net_m, lap_m)| net_m / lap_m),
+        off_route: along.map(|along| along.off_steps as f64 / steps.max(1) as f64),
+        route_offset_m: along.map(|along| along.offsets_m / steps.max(1) as f64),
+        metres_per_failure: net_route_m.map_or(distance_m, f64::abs) / (endings.failures + 1) as f64,
+        contacts: tally.contacts(),
+        mean_speed: distance_m / seconds,
+        spinning: share(spells.spinning),
+        standing: share(spells.standing),
+        circling: share(spells.circling),
+        backwards: net_route_m.map(|_| share(spells.backwards)),
+        prey_distance_m: prey_m.iter().map(|distance| f64::from(*distance)).collect::<Sorted>().upper_median(),
+        does_task: net_route_m.map(|net_m| net_m.abs() / seconds >= TASK_SPEED_M_PER_S),
+        rules: rule_totals(plan, tally),
+    }
+}

@@ -1,0 +1,247 @@
+//! What a script calls success, checked and compiled: conditions over the figures of the test.
+
+use super::access::{Access, Link};
+use super::positions::{first, span};
+use super::source::Code;
+use super::spoilt::Spoilt;
+use super::syntax::{WrittenSuccess, written_successes};
+use crate::diagnostic::{Diagnostic, Mistakes, nearest_name, printable};
+use crate::judge::explain::mistake;
+use crate::judge::expression::{Arithmetic, Comparison};
+use crate::judge::fact_table::is_group;
+use crate::judge::functions::{OF_ONE, OF_ONE_FRACTION, OF_TWO, OF_TWO_FRACTION};
+use crate::verdict::{Condition, FIGURES, Figure, FigureUse, Subject, Term};
+use rhai::{AST, Expr, FnCallExpr, Position, Scope};
+
+const CODE: &str = "E-SCRIPT-SUCCESS";
+
+/// Every condition of success without a mistake in it; `rules` are the names of the behaviour's rules.
+pub(super) fn conditions(
+    code: &Code,
+    ast: &AST,
+    constants: &Scope<'static>,
+    rules: &[&str],
+    spoilt: &Spoilt<'_>,
+    mistakes: &mut Mistakes,
+) -> Vec<Condition> {
+    let compiler = SuccessCompiler { code, constants, rules };
+    let mut conditions: Vec<Condition> = Vec::new();
+    for written in &written_successes(ast.statements()) {
+        let bytes = span(code, written.condition);
+        if spoilt.touches(&bytes, mistakes) {
+            continue;
+        }
+        let named = |message: String, label| mistake(&code.source, CODE, written.name_position, message, label);
+        let (name, count) = (written.name, mistakes.count());
+        if name.trim().is_empty() {
+            mistakes.add(named("a condition of success needs a name".to_owned(), "no name"));
+        } else if conditions.iter().any(|before| before.name == name) {
+            let message = format!("there are two conditions of success called \"{}\"", printable(name));
+            mistakes.add(named(message, "the second one").help("choose another name"));
+        }
+        match compiler.condition(written) {
+            Ok(term) if mistakes.count() == count => {
+                let text = code.source.text[bytes.clone()].split_whitespace().collect::<Vec<_>>().join(" ");
+                conditions.push(Condition { name: name.to_owned(), text, span: Some(bytes), term });
+            }
+            Ok(_) => {}
+            Err(wrong) => mistakes.add(*wrong),
+        }
+    }
+    conditions
+}
+
+/// A term with its kind.
+enum Kinded {
+    Number(Term),
+    Flag(Term),
+}
+
+type Compiled<T> = Result<T, Box<Diagnostic>>;
+
+struct SuccessCompiler<'a> {
+    code: &'a Code,
+    constants: &'a Scope<'static>,
+    rules: &'a [&'a str],
+}
+
+impl SuccessCompiler<'_> {
+    fn wrong<T>(
+        &self,
+        position: Position,
+        message: impl Into<String>,
+        label: &str,
+        help: impl Into<String>,
+    ) -> Compiled<T> {
+        mistake(&self.code.source, CODE, position, message.into(), label).help(help).fail()
+    }
+
+    fn condition(&self, written: &WrittenSuccess<'_>) -> Compiled<Term> {
+        match self.term(written.condition)? {
+            Kinded::Flag(term) if term.figures().is_empty() => {
+                let help = "write a figure of the test: test.failures_per_1000 <= 2";
+                self.wrong(first(written.condition), "this is the same for every test", "no figure is read here", help)
+            }
+            Kinded::Flag(term) => Ok(term),
+            Kinded::Number(_) => {
+                let message = "a condition of success must be true or false";
+                self.wrong(first(written.condition), message, "this is a number", "compare it: test.laps >= 5")
+            }
+        }
+    }
+
+    fn term(&self, expr: &Expr) -> Compiled<Kinded> {
+        let flags = |parts: &[Expr]| parts.iter().map(|part| self.flag(part)).collect::<Compiled<Vec<_>>>();
+        match expr {
+            Expr::FloatConstant(value, _) => Ok(Kinded::Number(Term::Constant(**value))),
+            Expr::IntegerConstant(value, _) => Ok(Kinded::Number(Term::Constant(*value as f64))),
+            Expr::BoolConstant(value, _) => Ok(Kinded::Flag(Term::Flag(*value))),
+            Expr::And(parts, _) => Ok(Kinded::Flag(Term::And(flags(parts)?))),
+            Expr::Or(parts, _) => Ok(Kinded::Flag(Term::Or(flags(parts)?))),
+            Expr::FnCall(call, position) => self.call(call, *position),
+            other => self.read(other),
+        }
+    }
+
+    fn number(&self, expr: &Expr) -> Compiled<Term> {
+        match self.term(expr)? {
+            Kinded::Number(term) => Ok(term),
+            Kinded::Flag(_) => {
+                let help = "compare numbers with numbers, and join comparisons with && or ||";
+                self.wrong(first(expr), "a number is needed here", "this is true or false", help)
+            }
+        }
+    }
+
+    fn flag(&self, expr: &Expr) -> Compiled<Term> {
+        match self.term(expr)? {
+            Kinded::Flag(term) => Ok(term),
+            Kinded::Number(_) => {
+                let message = "something true or false is needed here";
+                self.wrong(first(expr), message, "this is a number", "compare it: test.laps >= 5")
+            }
+        }
+    }
+
+    fn call(&self, call: &FnCallExpr, position: Position) -> Compiled<Kinded> {
+        let name = call.name.as_str();
+        match call.args.as_slice() {
+            [of] if name == "!" => Ok(Kinded::Flag(Term::Not(Box::new(self.flag(of)?)))),
+            [of] if name == "-" => Ok(Kinded::Number(Term::Negate(Box::new(self.number(of)?)))),
+            [of] if let Some(row) = OF_ONE.iter().chain(OF_ONE_FRACTION).find(|row| row.0 == name) => {
+                Ok(Kinded::Number(Term::OfOne(row.1, Box::new(self.number(of)?))))
+            }
+            [a, b] if let Some(comparison) = Comparison::of(name) => {
+                Ok(Kinded::Flag(Term::Compare(comparison, Box::new([self.number(a)?, self.number(b)?]))))
+            }
+            [a, b] if let Some(operator) = Arithmetic::of(name) => {
+                Ok(Kinded::Number(Term::Binary(operator, Box::new([self.number(a)?, self.number(b)?]))))
+            }
+            [a, b] if let Some(row) = OF_TWO.iter().chain(OF_TWO_FRACTION).find(|row| row.0 == name) => {
+                Ok(Kinded::Number(Term::OfTwo(row.1, Box::new([self.number(a)?, self.number(b)?]))))
+            }
+            _ => {
+                let message = format!("'{}' cannot be used in a condition of success", printable(name));
+                let help = "there are: && || ! + - * / % < <= > >= == != abs min max and the other functions of one or two numbers";
+                self.wrong(position, message, "not here", help)
+            }
+        }
+    }
+
+    /// A constant of the script, or a figure.
+    fn read(&self, expr: &Expr) -> Compiled<Kinded> {
+        let Some(access) = Access::of(expr) else {
+            return self.wrong(first(expr), "this is no figure and no number", "not known", "write test.laps >= 5");
+        };
+        let subject = match access.root {
+            "test" => Subject::Test,
+            "untrained" => Subject::Untrained,
+            root => return self.constant(root, &access),
+        };
+        match access.links.as_slice() {
+            [Link::Property(name, position)] => match Figure::of(name) {
+                Some(figure) if !figure.is_of_rule() => {
+                    Ok(Kinded::Number(Term::Figure(FigureUse { subject, figure, rule: 0 })))
+                }
+                Some(figure) => {
+                    self.wrong(*position, format!("'{name}' needs the name of a rule"), "here", of_rule(figure))
+                }
+                None => self.unknown(name, *position),
+            },
+            [Link::Call(call, position)] => self.of_rule(subject, call, *position),
+            _ => {
+                let help = format!("write {}.NAME, such as {}.failures_per_1000", subject.word(), subject.word());
+                self.wrong(access.position, "a figure has a name", "of what?", help)
+            }
+        }
+    }
+
+    fn of_rule(&self, subject: Subject, call: &FnCallExpr, position: Position) -> Compiled<Kinded> {
+        let name = call.name.as_str();
+        let figure = match Figure::of(name) {
+            Some(figure) if figure.is_of_rule() => figure,
+            Some(_) => {
+                let message = format!("'{name}' is a figure, not a function");
+                return self.wrong(position, message, "here", format!("write {}.{name}", subject.word()));
+            }
+            None => return self.unknown(name, position),
+        };
+        let [Expr::StringConstant(rule, at)] = call.args.as_slice() else {
+            return self.wrong(position, format!("'{name}' needs the name of a rule"), "here", of_rule(figure));
+        };
+        match self.rules.iter().position(|own| *own == rule.as_str()) {
+            Some(rule) => Ok(Kinded::Number(Term::Figure(FigureUse { subject, figure, rule }))),
+            None => {
+                let message = format!("there is no rule \"{}\"", printable(rule));
+                let help = match nearest_name(rule, self.rules.iter().copied()) {
+                    Some(near) => format!("did you mean \"{}\"?", printable(near)),
+                    None => format!("there are: {}", printable(&self.rules.join(", "))),
+                };
+                self.wrong(*at, message, "not known", help)
+            }
+        }
+    }
+
+    fn unknown<T>(&self, name: &str, position: Position) -> Compiled<T> {
+        let help = match nearest_name(name, FIGURES.iter().map(|figure| figure.name)) {
+            Some(near) => format!("did you mean '{near}'?"),
+            None => {
+                let names: Vec<_> = FIGURES.iter().map(|figure| figure.name).collect();
+                format!("there are: {}", names.join(", "))
+            }
+        };
+        self.wrong(position, format!("there is no figure '{}' of a test", printable(name)), "not known", help)
+    }
+
+    fn constant(&self, root: &str, access: &Access<'_>) -> Compiled<Kinded> {
+        let value = self.constants.get(root).filter(|_| access.links.is_empty());
+        let number =
+            value.and_then(|value| value.as_float().ok().or_else(|| value.as_int().ok().map(|whole| whole as f64)));
+        let flag = value.and_then(|value| value.as_bool().ok());
+        match (number, flag) {
+            (Some(number), _) => Ok(Kinded::Number(Term::Constant(number))),
+            (_, Some(flag)) => Ok(Kinded::Flag(Term::Flag(flag))),
+            _ if is_group(root) || root == "facts" => {
+                let message = format!("'{root}' is measured in every step: success is told by the test as a whole");
+                let help = "write a figure of the test, such as test.failures_per_1000 <= 2";
+                self.wrong(access.position, message, "a fact of a step", help)
+            }
+            _ => {
+                let message = format!("'{}' is no figure and no constant number", printable(root));
+                self.wrong(access.position, message, "not known", "write a figure of the test, such as test.laps >= 5")
+            }
+        }
+    }
+}
+
+fn of_rule(figure: &Figure) -> String {
+    format!("write test.{}(\"name of the rule\") <= 5", figure.name)
+}
+
+/// Whether a script has such a statement: before, the words are the script's own.
+pub(super) fn is_asked_for(code: &Code) -> bool {
+    let ends = |text: &str| text.trim_end().is_empty() || text.trim_end().ends_with([';', '}']);
+    code.plain
+        .match_indices("success")
+        .any(|(at, word)| ends(&code.plain[..at]) && code.plain[at + word.len()..].trim_start().starts_with('"'))
+}

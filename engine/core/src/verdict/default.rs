@@ -1,0 +1,61 @@
+//! What is called success where a script does not say it.
+
+use super::figures::Figure;
+use super::success::Condition;
+use super::term::{FigureUse, Subject, Term};
+use crate::judge::expression::{Arithmetic, Comparison};
+
+/// In which ways an attempt may end, by the text of a script.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Endable {
+    pub failure: bool,
+    pub goal: bool,
+}
+
+/// At most so many failures in 1,000 steps.
+const FEW_FAILURES: f64 = 10.0;
+/// At least this share of the attempts.
+const MOST_GOALS: f64 = 0.8;
+/// So many times as far between two failures as a robot that knows nothing.
+const BEATS_CHANCE: f64 = 5.0;
+/// Net along the route, m/s: half of the paper's cruising speed.
+const ALONG_M_PER_S: f64 = 0.1;
+/// At most this share of spells without getting anywhere.
+const MOST_IDLE: f64 = 0.5;
+
+/// The conditions for a script whose attempts may end so, in a world with a lap route or without one; `seconds` is how long
+/// the test takes. None if nothing can be told.
+pub(crate) fn default_conditions(endable: Endable, has_route: bool, seconds: f64) -> Vec<Condition> {
+    use Comparison::{GreaterOrEqual, Less, LessOrEqual};
+    use Subject::{Test, Untrained};
+    let figure = |subject, name| {
+        let figure = Figure::of(name);
+        figure.map_or(Term::Constant(f64::NAN), |figure| Term::Figure(FigureUse { subject, figure, rule: 0 }))
+    };
+    let compare = |comparison, a, b| Term::Compare(comparison, Box::new([a, b]));
+    let than = |comparison, subject, name, limit| compare(comparison, figure(subject, name), Term::Constant(limit));
+    let mut conditions = Vec::new();
+    let mut ask = |name: &str, text: &str, term| conditions.push(Condition::by_default(name, text, term));
+    if endable.failure {
+        let few = than(LessOrEqual, Test, "failures_per_1000", FEW_FAILURES);
+        ask("fails little", "test.failures_per_1000 <= 10", few);
+    }
+    if endable.goal {
+        let goals = than(GreaterOrEqual, Test, "goal_rate", MOST_GOALS);
+        let chance = than(Less, Untrained, "goal_rate", MOST_GOALS);
+        ask("reaches its goals", "test.goal_rate >= 0.8 && untrained.goal_rate < 0.8", Term::And(vec![goals, chance]));
+    } else if endable.failure {
+        let chance = figure(Untrained, "metres_per_failure");
+        let chance = Term::Binary(Arithmetic::Multiply, Box::new([Term::Constant(BEATS_CHANCE), chance]));
+        let beats = compare(GreaterOrEqual, figure(Test, "metres_per_failure"), chance);
+        ask("beats chance", "test.metres_per_failure >= 5 * untrained.metres_per_failure", beats);
+        if has_route {
+            let along = Term::OfOne(f64::abs, Box::new(figure(Test, "net_route_m")));
+            let along = compare(GreaterOrEqual, along, Term::Constant(ALONG_M_PER_S * seconds));
+            ask("gets along", &format!("abs(test.net_route_m) >= {:.0}", ALONG_M_PER_S * seconds), along);
+        } else {
+            ask("gets along", "test.idle <= 0.5", than(LessOrEqual, Test, "idle", MOST_IDLE));
+        }
+    }
+    conditions
+}

@@ -1,0 +1,219 @@
+//! What a test measures: the figures of one policy, and the names by which scripts ask for them.
+
+use serde::{Deserialize, Serialize};
+
+use super::window::Counts;
+
+/// The frozen policy, judged by the script and by the truth.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TestFigures {
+    /// Steps of the test.
+    pub steps: u64,
+    /// Attempts that ended in a failure.
+    pub failures: u64,
+    /// Attempts that ended in a goal.
+    pub goals: u64,
+    /// Attempts that ended in neither, such as by a time that was up.
+    pub restarts: u64,
+    /// Failures for 1,000 steps.
+    pub failures_per_1000: f64,
+    /// Goals as a share of all attempts that ended; 0 if none did.
+    pub goal_rate: f64,
+    /// Upper median duration of the attempts that ended in a goal, seconds; null if none did.
+    pub goal_s: Option<f64>,
+    /// Sum of the rewards for 1,000 steps.
+    pub reinforcement_per_1000: f64,
+    /// Length of the path, metres; being put somewhere is no path.
+    pub distance_m: f64,
+    /// Signed progress along the world's lap route, on it and between interventions, metres; null without one.
+    pub net_route_m: Option<f64>,
+    /// That progress in lengths of the route.
+    pub laps: Option<f64>,
+    /// Share of the steps that end farther from the route than its half width; null without a route.
+    pub off_route: Option<f64>,
+    /// Mean distance from the route, metres; null without one.
+    pub route_offset_m: Option<f64>,
+    /// Progress along the route in either direction, without a route the path, over failures + 1, metres.
+    pub metres_per_failure: f64,
+    /// Steps in which the body touched something.
+    pub contacts: u64,
+    /// Path length over time, m/s.
+    pub mean_speed: f64,
+    /// Share of spells of 20 s with a full turn on a radius below 0.3 m.
+    pub spinning: f64,
+    /// Share of spells with less than 0.2 m of path.
+    pub standing: f64,
+    /// Share of spells that went round in a circle.
+    pub circling: f64,
+    /// Share of spells with backward progress along the route; null without one.
+    pub backwards: Option<f64>,
+    /// Median distance between the robot and the prey, metres, centre to centre; null without one.
+    pub prey_distance_m: Option<f64>,
+    /// Whether the robot makes half of 0.2 m/s net along the route, in either direction; null without a route. Says nothing of
+    /// failures: see the verdict.
+    pub does_task: Option<bool>,
+    /// What each rule did.
+    pub rules: Vec<RuleTotal>,
+}
+
+/// What one rule did.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RuleTotal {
+    /// The rule's name.
+    pub name: String,
+    /// How often it fired.
+    pub fired: u64,
+    /// Sum of what it added.
+    pub total: f64,
+}
+
+impl TestFigures {
+    /// How many attempts ended.
+    #[must_use]
+    pub fn attempts(&self) -> u64 {
+        self.failures + self.goals + self.restarts
+    }
+
+    /// A count for 1,000 steps.
+    #[must_use]
+    pub fn per_1000(&self, count: u64) -> f64 {
+        count as f64 * 1000.0 / self.steps.max(1) as f64
+    }
+
+    /// Share of spells without getting anywhere: spinning, standing or circling.
+    #[must_use]
+    pub fn idle(&self) -> f64 {
+        self.spinning + self.standing + self.circling
+    }
+}
+
+/// Where a figure comes from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Source {
+    /// Every test has it.
+    Test(fn(&TestFigures) -> f64),
+    /// Only a test in a world with a lap route has it.
+    Route(fn(&TestFigures) -> Option<f64>),
+    /// Only a test in which an attempt reached its goal has it; else it counts as the whole test's time.
+    Goal(fn(&TestFigures) -> Option<f64>),
+    /// Of the rule that is named.
+    Rule(fn(&TestFigures, &RuleTotal) -> f64),
+}
+
+/// A figure that scripts can ask for: `test.NAME`, `untrained.NAME`.
+#[derive(Debug)]
+pub struct Figure {
+    /// Its name.
+    pub name: &'static str,
+    /// The unit, in words; empty for numbers without one.
+    pub unit: &'static str,
+    /// What it is, in one sentence.
+    pub about: &'static str,
+    pub(crate) source: Source,
+    /// The same figure of a window of learning, where that is defined.
+    pub(crate) window: Option<fn(&Counts<'_>, usize) -> f64>,
+}
+
+impl Figure {
+    /// The figure of a name.
+    #[must_use]
+    pub fn of(name: &str) -> Option<&'static Self> {
+        FIGURES.iter().find(|figure| figure.name == name)
+    }
+
+    /// Whether it is asked for with the name of a rule.
+    #[must_use]
+    pub fn is_of_rule(&self) -> bool {
+        matches!(self.source, Source::Rule(_))
+    }
+
+    /// Whether only a world with a lap route has it.
+    #[must_use]
+    pub fn needs_route(&self) -> bool {
+        matches!(self.source, Source::Route(_))
+    }
+
+    /// Whether a window of learning has it too.
+    #[must_use]
+    pub fn is_of_windows(&self) -> bool {
+        self.window.is_some()
+    }
+}
+
+const fn test(name: &'static str, unit: &'static str, get: fn(&TestFigures) -> f64, about: &'static str) -> Figure {
+    Figure { name, unit, about, source: Source::Test(get), window: None }
+}
+
+const fn route(
+    name: &'static str,
+    unit: &'static str,
+    get: fn(&TestFigures) -> Option<f64>,
+    about: &'static str,
+) -> Figure {
+    Figure { name, unit, about, source: Source::Route(get), window: None }
+}
+
+impl Figure {
+    const fn and_of_windows(self, window: fn(&Counts<'_>, usize) -> f64) -> Self {
+        Self { window: Some(window), ..self }
+    }
+}
+
+/// Every figure, in the order of the reference.
+pub const FIGURES: &[Figure] = &[
+    test("attempts", "", |test| test.attempts() as f64, "How many attempts ended."),
+    test("failures_per_1000", "", |test| test.failures_per_1000, "Failures in 1,000 steps.")
+        .and_of_windows(|counts, _| counts.per_1000(counts.window.endings.failures)),
+    test("goals_per_1000", "", |test| test.per_1000(test.goals), "Goals in 1,000 steps.")
+        .and_of_windows(|counts, _| counts.per_1000(counts.window.endings.goals)),
+    test("restarts_per_1000", "", |test| test.per_1000(test.restarts), "Restarts in 1,000 steps.")
+        .and_of_windows(|counts, _| counts.per_1000(counts.window.endings.restarts)),
+    test("goal_rate", "share", |test| test.goal_rate, "Goals as a share of the attempts that ended; 0 if none did.")
+        .and_of_windows(|counts, _| counts.goal_rate()),
+    Figure {
+        name: "goal_s",
+        unit: "seconds",
+        about: "Median duration of the attempts that reached a goal; the time of the whole test if none did.",
+        source: Source::Goal(|test| test.goal_s),
+        window: None,
+    },
+    test("reward_per_1000", "", |test| test.reinforcement_per_1000, "Sum of the rewards in 1,000 steps.")
+        .and_of_windows(|counts, _| counts.window.reinforcement * 1000.0 / counts.window.steps.max(1) as f64),
+    Figure {
+        name: "per_1000",
+        unit: "",
+        about: "How often a rule fired in 1,000 steps: test.per_1000(\"too close\").",
+        source: Source::Rule(|test, rule| test.per_1000(rule.fired)),
+        window: None,
+    }
+    .and_of_windows(|counts, rule| counts.per_1000(u64::from(counts.fired.get(rule).copied().unwrap_or(0)))),
+    test(
+        "contacts_per_1000",
+        "",
+        |test| test.per_1000(test.contacts),
+        "Steps in 1,000 in which the body touched something.",
+    )
+    .and_of_windows(|counts, _| counts.per_1000(counts.window.contacts)),
+    test("distance_m", "metres", |test| test.distance_m, "Length of the path."),
+    test("mean_speed", "m/s", |test| test.mean_speed, "Length of the path over time."),
+    route(
+        "net_route_m",
+        "metres",
+        |test| test.net_route_m,
+        "Signed progress along the route, on it and between interventions.",
+    ),
+    route("laps", "laps", |test| test.laps, "The same progress in lengths of the route."),
+    route("off_route", "share", |test| test.off_route, "Steps that end farther from the route than its half width."),
+    route("route_offset_m", "metres", |test| test.route_offset_m, "Mean distance from the route."),
+    test(
+        "metres_per_failure",
+        "metres",
+        |test| test.metres_per_failure,
+        "Progress along the route in either direction, without a route the path, over failures + 1.",
+    ),
+    test("spinning", "share", |test| test.spinning, "Spells of 20 s with a full turn on a radius below 0.3 m."),
+    test("standing", "share", |test| test.standing, "Spells of 20 s with less than 0.2 m of path."),
+    test("circling", "share", |test| test.circling, "Spells of 20 s that went round in a wider circle."),
+    test("idle", "share", TestFigures::idle, "Spells spinning, standing or circling."),
+    route("backwards", "share", |test| test.backwards, "Spells of 20 s with backward progress along the route."),
+];

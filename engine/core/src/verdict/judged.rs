@@ -1,0 +1,64 @@
+//! The verdict on one test: which conditions hold, by which figures, beside what chance does.
+
+use serde::{Deserialize, Serialize};
+
+/// Whether a test is a success, and why.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Verdict {
+    /// Null where it cannot be told.
+    pub success: Option<bool>,
+    /// Why.
+    pub why: Why,
+    /// Every condition, with its figures.
+    pub conditions: Vec<ConditionVerdict>,
+}
+
+/// Why a verdict is what it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Why {
+    /// Every condition holds, and not all of them hold of a robot that knows nothing.
+    Holds,
+    /// A condition does not hold.
+    Fails,
+    /// A robot that knows nothing meets all conditions too.
+    UntrainedToo,
+    /// The conditions read nothing but rewards, which are the script's own word.
+    RewardOnly,
+    /// The script names no failure, no goal and no success.
+    NothingToTellBy,
+}
+
+/// One condition in one test.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ConditionVerdict {
+    /// Its name.
+    pub name: String,
+    /// What must hold.
+    pub condition: String,
+    /// Whether it holds.
+    pub holds: bool,
+    /// Whether it holds of a robot that knows nothing.
+    pub untrained: bool,
+    /// The figures that it reads.
+    pub figures: Vec<FigureVerdict>,
+}
+
+/// One figure, beside that of a robot that knows nothing.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FigureVerdict {
+    /// Its name, as in `test.NAME`.
+    pub name: String,
+    /// Of the policy that was learned; null where the test does not have it.
+    pub value: Option<f64>,
+    /// Of one that knows nothing.
+    pub untrained: Option<f64>,
+}
+
+impl Verdict {
+    /// Whether it is a success, and told.
+    #[must_use]
+    pub fn is_success(&self) -> bool {
+        self.success == Some(true)
+    }
+}

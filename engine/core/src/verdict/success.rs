@@ -1,0 +1,165 @@
+//! The conditions of success of one behaviour in one world, and from which step on learning meets them.
+
+use std::ops::Range;
+
+use super::default::{Endable, default_conditions};
+use super::figures::TestFigures;
+use super::judged::{ConditionVerdict, FigureVerdict, Verdict, Why};
+use super::term::{Measured, Subject, Term};
+use super::window::{Counts, WINDOW_STEPS};
+use crate::outcome::Endings;
+
+/// So many good windows in a row are asked for.
+const GOOD_WINDOWS: usize = 4;
+/// A window is good with at most so many failures.
+const FEW_FAILURES: u64 = 1;
+/// Where failures and goals can happen: so many times as many goals as failures, over the good windows.
+const GOALS_PER_FAILURE: u64 = 4;
+/// Where only goals can happen: this share of the attempts, over the good windows.
+const MOST_GOALS: f64 = 0.8;
+
+/// One condition.
+#[derive(Debug, Clone)]
+pub struct Condition {
+    /// Its name.
+    pub name: String,
+    /// What must hold, as it stands in the script.
+    pub text: String,
+    /// Its bytes in the script; nothing for a condition of the default.
+    pub span: Option<Range<usize>>,
+    pub(crate) term: Term,
+}
+
+impl Condition {
+    pub(super) fn by_default(name: &str, text: &str, term: Term) -> Self {
+        Self { name: name.to_owned(), text: text.to_owned(), span: None, term }
+    }
+
+    /// Whether it reads nothing but rewards.
+    fn reads_only_rewards(&self) -> bool {
+        self.term.figures().iter().all(|asked| asked.figure.name == "reward_per_1000")
+    }
+
+    /// Whether every window of learning can be asked.
+    fn is_of_windows(&self) -> bool {
+        let figures = self.term.figures();
+        figures.iter().all(|asked| asked.subject == Subject::Test && asked.figure.is_of_windows())
+    }
+}
+
+/// What is called success.
+#[derive(Debug, Clone)]
+pub struct Success {
+    conditions: Vec<Condition>,
+    endable: Endable,
+    /// How long the test takes, seconds of the robot.
+    seconds: f64,
+}
+
+impl Success {
+    /// The script's own conditions, or the default in a world with a lap route or without one.
+    pub(crate) fn new(own: &[Condition], endable: Endable, has_route: bool, seconds: f64) -> Self {
+        let conditions = if own.is_empty() { default_conditions(endable, has_route, seconds) } else { own.to_vec() };
+        Self { conditions, endable, seconds }
+    }
+
+    /// All of them must hold; none if a script says nothing by which success could be told.
+    #[must_use]
+    pub fn conditions(&self) -> &[Condition] {
+        &self.conditions
+    }
+
+    /// Whether a test is a success, beside what a robot that knows nothing does in the same test.
+    #[must_use]
+    pub fn verdict(&self, test: &TestFigures, untrained: &TestFigures) -> Verdict {
+        let (own, chance) = (self.of(test, untrained), self.of(untrained, untrained));
+        let conditions: Vec<_> = self.conditions.iter().map(|condition| self.judged(condition, own, chance)).collect();
+        let holds = conditions.iter().all(|condition| condition.holds);
+        let why = if conditions.is_empty() {
+            Why::NothingToTellBy
+        } else if self.conditions.iter().all(Condition::reads_only_rewards) {
+            Why::RewardOnly
+        } else if !holds {
+            Why::Fails
+        } else if conditions.iter().all(|condition| condition.untrained) {
+            Why::UntrainedToo
+        } else {
+            Why::Holds
+        };
+        let success = match why {
+            Why::Holds => Some(true),
+            Why::Fails => Some(false),
+            Why::UntrainedToo | Why::RewardOnly | Why::NothingToTellBy => None,
+        };
+        Verdict { success, why, conditions }
+    }
+
+    /// Whether some policy's test meets all conditions.
+    #[must_use]
+    pub fn is_met_by(&self, test: &TestFigures, untrained: &TestFigures) -> bool {
+        !self.conditions.is_empty()
+            && self.conditions.iter().all(|condition| condition.term.holds_in(self.of(test, untrained)))
+    }
+
+    fn of<'a>(&self, test: &'a TestFigures, untrained: &'a TestFigures) -> Measured<'a> {
+        Measured { test, untrained, seconds: self.seconds }
+    }
+
+    fn judged(&self, condition: &Condition, own: Measured<'_>, chance: Measured<'_>) -> ConditionVerdict {
+        let mut figures: Vec<FigureVerdict> = Vec::new();
+        for asked in condition.term.figures() {
+            let rule = asked.figure.is_of_rule().then(|| own.test.rules.get(asked.rule)).flatten();
+            let name = rule.map_or_else(
+                || asked.figure.name.to_owned(),
+                |rule| format!("{}(\"{}\")", asked.figure.name, rule.name),
+            );
+            if figures.iter().all(|known| known.name != name) {
+                let asked = super::term::FigureUse { subject: Subject::Test, ..asked };
+                figures.push(FigureVerdict { name, value: asked.read(own), untrained: asked.read(chance) });
+            }
+        }
+        ConditionVerdict {
+            name: condition.name.clone(),
+            condition: condition.text.clone(),
+            holds: condition.term.holds_in(own),
+            untrained: condition.term.holds_in(chance),
+            figures,
+        }
+    }
+
+    /// The first step of learning from which four windows in a row are good, only whole windows counted: those in which the
+    /// script's own conditions hold, as far as windows have their figures; else those with at most one failure, and goals
+    /// where goals can be reached. Nothing if it is never, or cannot be told.
+    #[must_use]
+    pub fn learned_at(&self, windows: &[Counts<'_>]) -> Option<u64> {
+        let own: Vec<&Condition> =
+            self.conditions.iter().filter(|own| own.span.is_some() && own.is_of_windows()).collect();
+        let good = |four: &[Counts<'_>]| {
+            let ended: Endings = four.iter().map(|counts| counts.window.endings).sum();
+            let few = four.iter().all(|counts| counts.window.endings.failures <= FEW_FAILURES);
+            match self.endable {
+                _ if four.iter().any(|counts| counts.window.steps < WINDOW_STEPS) => false,
+                _ if !own.is_empty() => {
+                    four.iter().all(|counts| own.iter().all(|condition| condition.term.holds_in_window(counts)))
+                }
+                Endable { failure: true, goal: false } => few,
+                Endable { failure: true, goal: true } => {
+                    few && ended.goals > 0 && ended.goals >= GOALS_PER_FAILURE * ended.failures
+                }
+                Endable { failure: false, goal: true } => {
+                    ended.goals > 0 && ended.goals as f64 >= MOST_GOALS * ended.attempts() as f64
+                }
+                Endable { failure: false, goal: false } => false,
+            }
+        };
+        windows.windows(GOOD_WINDOWS).position(good).map(|index| index as u64 * WINDOW_STEPS)
+    }
+
+    /// Whether a curve of learning can say when it was learned.
+    #[must_use]
+    pub fn tells_learning(&self) -> bool {
+        self.endable.failure
+            || self.endable.goal
+            || self.conditions.iter().any(|own| own.span.is_some() && own.is_of_windows())
+    }
+}

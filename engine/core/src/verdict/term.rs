@@ -1,0 +1,126 @@
+//! What a condition of success computes from figures: a small tree, with no step in it.
+
+use super::figures::{Figure, Source, TestFigures};
+use super::window::Counts;
+use crate::judge::expression::{Arithmetic, Comparison};
+
+/// Whose figure is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Subject {
+    /// The policy that was learned: `test`.
+    Test,
+    /// A policy that knows nothing: `untrained`.
+    Untrained,
+}
+
+impl Subject {
+    /// The word of a script.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Test => "test",
+            Self::Untrained => "untrained",
+        }
+    }
+}
+
+/// A figure as it is asked for.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FigureUse {
+    pub subject: Subject,
+    pub figure: &'static Figure,
+    /// The number of the rule that is named; 0 where none is.
+    pub rule: usize,
+}
+
+/// Both sides' figures.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Measured<'a> {
+    pub test: &'a TestFigures,
+    pub untrained: &'a TestFigures,
+    /// How long the test took, seconds of the robot.
+    pub seconds: f64,
+}
+
+/// A tree with a number or a truth value; the compiler of scripts keeps the two apart.
+#[derive(Debug, Clone)]
+pub(crate) enum Term {
+    Constant(f64),
+    Figure(FigureUse),
+    Negate(Box<Term>),
+    Binary(Arithmetic, Box<[Term; 2]>),
+    OfOne(fn(f64) -> f64, Box<Term>),
+    OfTwo(fn(f64, f64) -> f64, Box<[Term; 2]>),
+    Flag(bool),
+    Compare(Comparison, Box<[Term; 2]>),
+    Not(Box<Term>),
+    And(Vec<Term>),
+    Or(Vec<Term>),
+}
+
+impl Term {
+    /// The number; nothing if a figure is missing.
+    fn value(&self, read: &dyn Fn(&FigureUse) -> Option<f64>) -> Option<f64> {
+        let pair = |pair: &[Self; 2]| Some((pair[0].value(read)?, pair[1].value(read)?));
+        match self {
+            Self::Constant(value) => Some(*value),
+            Self::Figure(figure) => read(figure),
+            Self::Negate(of) => Some(-of.value(read)?),
+            Self::Binary(operator, sides) => pair(sides).map(|(a, b)| operator.apply(a, b)),
+            Self::OfOne(function, of) => Some(function(of.value(read)?)),
+            Self::OfTwo(function, sides) => pair(sides).map(|(a, b)| function(a, b)),
+            flag => flag.holds(read).map(f64::from),
+        }
+    }
+
+    /// Whether it holds; nothing if a figure is missing.
+    fn holds(&self, read: &dyn Fn(&FigureUse) -> Option<f64>) -> Option<bool> {
+        match self {
+            Self::Flag(value) => Some(*value),
+            Self::Compare(comparison, sides) => Some(comparison.holds(sides[0].value(read)?, sides[1].value(read)?)),
+            Self::Not(of) => Some(!of.holds(read)?),
+            Self::And(all) => all.iter().try_fold(true, |all, one| Some(all & one.holds(read)?)),
+            Self::Or(any) => any.iter().try_fold(false, |any, one| Some(any | one.holds(read)?)),
+            number => Some(number.value(read)? != 0.0),
+        }
+    }
+
+    /// Whether it holds of a test; a figure that is missing holds nothing.
+    pub(crate) fn holds_in(&self, measured: Measured<'_>) -> bool {
+        self.holds(&|figure| figure.read(measured)).unwrap_or(false)
+    }
+
+    /// Whether it holds of a window of learning.
+    pub(crate) fn holds_in_window(&self, counts: &Counts<'_>) -> bool {
+        self.holds(&|asked| Some(asked.figure.window?(counts, asked.rule))).unwrap_or(false)
+    }
+
+    /// All figures that it reads, in their order.
+    pub(crate) fn figures(&self) -> Vec<FigureUse> {
+        match self {
+            Self::Constant(_) | Self::Flag(_) => Vec::new(),
+            Self::Figure(figure) => vec![*figure],
+            Self::Negate(of) | Self::OfOne(_, of) | Self::Not(of) => of.figures(),
+            Self::Binary(_, sides) | Self::OfTwo(_, sides) | Self::Compare(_, sides) => {
+                sides.iter().flat_map(Self::figures).collect()
+            }
+            Self::And(parts) | Self::Or(parts) => parts.iter().flat_map(Self::figures).collect(),
+        }
+    }
+}
+
+impl FigureUse {
+    /// Its value in a test.
+    pub(crate) fn read(&self, measured: Measured<'_>) -> Option<f64> {
+        let test = match self.subject {
+            Subject::Test => measured.test,
+            Subject::Untrained => measured.untrained,
+        };
+        match self.figure.source {
+            Source::Test(get) => Some(get(test)),
+            Source::Route(get) => get(test),
+            Source::Goal(get) => Some(get(test).unwrap_or(measured.seconds)),
+            Source::Rule(get) => test.rules.get(self.rule).map(|rule| get(test, rule)),
+        }
+    }
+}
