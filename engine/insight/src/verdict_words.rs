@@ -1,7 +1,7 @@
 //! Verdicts in words: whether a run is a success and why, when it was learned.
 
 use engine::experiment::{ConditionSpread, Plan, Summary};
-use engine::verdict::{ConditionVerdict, FigureVerdict, Verdict, Why};
+use engine::verdict::{Because, ConditionVerdict, FigureVerdict, SuccessVerdict};
 
 use crate::words::short;
 
@@ -10,21 +10,21 @@ const WRITE: &str = "success \"name\" when test.failures_per_1000 <= 2;";
 
 /// Whether it is a success, and why, on one line.
 #[must_use]
-pub fn headline(verdict: &Verdict) -> String {
+pub fn headline(verdict: &SuccessVerdict) -> String {
     let names = |holds: bool| {
         let wanted = verdict.conditions.iter().filter(|condition| condition.holds == holds);
         wanted.map(|condition| format!("\"{}\"", condition.name)).collect::<Vec<_>>().join(", ")
     };
     match verdict.why {
-        Why::Holds => "yes".to_owned(),
-        Why::Fails => format!("no: {} does not hold", names(false)),
-        Why::UntrainedToo => {
+        Because::Holds => "yes".to_owned(),
+        Because::Fails => format!("no: {} does not hold", names(false)),
+        Because::UntrainedToo => {
             "cannot be told: a robot that knows nothing meets every condition too; ask for what it must do".to_owned()
         }
-        Why::RewardOnly => {
+        Because::RewardOnly => {
             format!("cannot be told from rewards alone, which are the script's own word; write: {WRITE}")
         }
-        Why::NothingToTellBy => {
+        Because::NothingToTellBy => {
             format!("cannot be told from this script: it names no failure, no goal and no success; write: {WRITE}")
         }
     }

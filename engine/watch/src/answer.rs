@@ -11,12 +11,12 @@ const LINGER: Duration = Duration::from_millis(100);
 
 /// A status of HTTP with its name (RFC 9110, section 15).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Status(u16, &'static str);
+pub(super) struct HttpStatus(u16, &'static str);
 
-impl Status {
+impl HttpStatus {
     pub(super) const OK: Self = Self(200, "OK");
     pub(super) const ACCEPTED: Self = Self(202, "Accepted");
-    pub(super) const BAD_REQUEST: Self = Self(400, "Bad Request");
+    pub(super) const BAD_REQUEST: Self = Self(400, "Bad HttpRequest");
     pub(super) const UNAUTHORIZED: Self = Self(401, "Unauthorized");
     pub(super) const FORBIDDEN: Self = Self(403, "Forbidden");
     pub(super) const NOT_FOUND: Self = Self(404, "Not Found");
@@ -30,22 +30,22 @@ impl Status {
 
 /// Why a request is refused: its status, and a sentence for whoever reads it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Refusal(pub Status, pub &'static str);
+pub(super) struct Refusal(pub HttpStatus, pub &'static str);
 
 /// What a request is answered with.
-pub(super) struct Answer {
-    status: Status,
+pub(super) struct HttpAnswer {
+    status: HttpStatus,
     kind: &'static str,
     body: Vec<u8>,
 }
 
-impl Answer {
-    pub(super) fn new(status: Status, kind: &'static str, body: impl Into<Vec<u8>>) -> Self {
+impl HttpAnswer {
+    pub(super) fn new(status: HttpStatus, kind: &'static str, body: impl Into<Vec<u8>>) -> Self {
         Self { status, kind, body: body.into() }
     }
 
     /// A status with a sentence, or just the status.
-    pub(super) fn text(status: Status, text: &str) -> Self {
+    pub(super) fn text(status: HttpStatus, text: &str) -> Self {
         let body = if text.is_empty() { String::new() } else { format!("{text}\n") };
         Self::new(status, "text/plain; charset=utf-8", body)
     }
@@ -58,14 +58,14 @@ impl Answer {
     }
 }
 
-impl From<Refusal> for Answer {
+impl From<Refusal> for HttpAnswer {
     fn from(Refusal(status, why): Refusal) -> Self {
         Self::text(status, why)
     }
 }
 
 /// Line and headers of an answer; without a length it lasts until one side closes.
-pub(super) fn head(Status(number, name): Status, kind: &str, policy: &str, length: Option<usize>) -> String {
+pub(super) fn head(HttpStatus(number, name): HttpStatus, kind: &str, policy: &str, length: Option<usize>) -> String {
     let length = length.map_or(String::new(), |length| format!("content-length: {length}\r\n"));
     format!(
         "HTTP/1.1 {number} {name}\r\n\

@@ -5,7 +5,7 @@ use std::io::{ErrorKind, Result};
 use std::net::TcpStream;
 use std::time::Duration;
 
-use super::answer::{Status, head, send};
+use super::answer::{HttpStatus, head, send};
 use super::board::Board;
 
 /// How often a quiet client is looked at: one that has gone leaves its place to the next.
@@ -16,7 +16,7 @@ const LOOK: Duration = Duration::from_millis(500);
 /// # Errors
 /// If the client has gone, does not read, or has something to say.
 pub(super) fn tell(stream: &mut TcpStream, board: &Board, policy: &str) -> Result<()> {
-    send(stream, head(Status::OK, "text/event-stream", policy, None).as_bytes())?;
+    send(stream, head(HttpStatus::OK, "text/event-stream", policy, None).as_bytes())?;
     // A read is only a look whether the client is there.
     stream.set_read_timeout(Some(Duration::from_millis(1)))?;
     let mut sent = 0;

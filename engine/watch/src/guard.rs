@@ -1,8 +1,8 @@
 //! Who may ask: everything that is checked before a request is answered. Loopback is no protection by itself, since any web
 //! page in the user's browser can send requests to it.
 
-use super::answer::{Refusal, Status};
-use super::request::Request;
+use super::answer::{HttpStatus, Refusal};
+use super::request::HttpRequest;
 
 /// Longest body, bytes; no request needs one.
 const MOST_BODY_BYTES: u64 = 1024;
@@ -20,30 +20,30 @@ impl Guard {
     }
 
     /// Checks all but the path.
-    pub(super) fn admit(&self, request: &Request) -> Result<(), Refusal> {
-        let host = request.only("host").ok_or(Refusal(Status::BAD_REQUEST, "one Host header is needed"))?;
+    pub(super) fn admit(&self, request: &HttpRequest) -> Result<(), Refusal> {
+        let host = request.only("host").ok_or(Refusal(HttpStatus::BAD_REQUEST, "one Host header is needed"))?;
         // A name that an attacker points at 127.0.0.1 is still in this header.
         if !request.path.starts_with('/') || !self.hosts.iter().any(|own| own == host) {
-            return Err(Refusal(Status::FORBIDDEN, "this Host is not served here"));
+            return Err(Refusal(HttpStatus::FORBIDDEN, "this Host is not served here"));
         }
         if has_long_body(request) {
-            return Err(Refusal(Status::CONTENT_TOO_LARGE, "no request needs a body"));
+            return Err(Refusal(HttpStatus::CONTENT_TOO_LARGE, "no request needs a body"));
         }
         // Browsers send an Origin with every request that can change something, and with what another page reads.
         if (request.method != "GET" || request.all("origin").next().is_some()) && !self.is_from_here(request) {
-            return Err(Refusal(Status::FORBIDDEN, "this Origin may not ask"));
+            return Err(Refusal(HttpStatus::FORBIDDEN, "this Origin may not ask"));
         }
         // What another page only embeds comes without an Origin, but says so here.
         if request.all("sec-fetch-site").any(|site| site != b"same-origin" && site != b"none") {
-            return Err(Refusal(Status::FORBIDDEN, "another page may not ask"));
+            return Err(Refusal(HttpStatus::FORBIDDEN, "another page may not ask"));
         }
         if !self.knows(request.asked("token").unwrap_or("")) {
-            return Err(Refusal(Status::UNAUTHORIZED, "open the address that the program printed, with its token"));
+            return Err(Refusal(HttpStatus::UNAUTHORIZED, "open the address that the program printed, with its token"));
         }
         Ok(())
     }
 
-    fn is_from_here(&self, request: &Request) -> bool {
+    fn is_from_here(&self, request: &HttpRequest) -> bool {
         let origin = request.only("origin").and_then(|origin| origin.strip_prefix("http://"));
         origin.is_some_and(|origin| self.hosts.iter().any(|own| own == origin))
     }
@@ -56,7 +56,7 @@ impl Guard {
 }
 
 /// Whether a body comes that nobody would read, or one whose length is not known before.
-fn has_long_body(request: &Request) -> bool {
+fn has_long_body(request: &HttpRequest) -> bool {
     let length = |value: &[u8]| std::str::from_utf8(value).ok()?.parse::<u64>().ok();
     request.all("transfer-encoding").next().is_some()
         || request.all("content-length").any(|value| length(value).is_none_or(|length| length > MOST_BODY_BYTES))

@@ -4,7 +4,7 @@ use std::io::Read;
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
-use super::answer::{Refusal, Status};
+use super::answer::{HttpStatus, Refusal};
 
 /// Longest line and headers of a request, bytes.
 const MOST_HEAD_BYTES: usize = 8 * 1024;
@@ -15,7 +15,7 @@ const HEAD_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// A request's line and headers; no request here needs a body.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Request {
+pub(super) struct HttpRequest {
     pub method: String,
     /// As it was sent: with a scheme and a host if it was sent to a proxy.
     pub path: String,
@@ -25,7 +25,7 @@ pub(super) struct Request {
     pub headers: Vec<(String, Vec<u8>)>,
 }
 
-impl Request {
+impl HttpRequest {
     /// Reads from a client up to the empty line after the headers.
     ///
     /// # Errors
@@ -34,19 +34,19 @@ impl Request {
         let (deadline, mut head, mut piece) = (Instant::now() + HEAD_TIMEOUT, Vec::new(), [0; 2048]);
         loop {
             let left = deadline.saturating_duration_since(Instant::now()).max(Duration::from_millis(1));
-            let late = || Refusal(Status::REQUEST_TIMEOUT, "the request took longer than 10 seconds");
+            let late = || Refusal(HttpStatus::REQUEST_TIMEOUT, "the request took longer than 10 seconds");
             stream.set_read_timeout(Some(left)).map_err(|_| late())?;
             match stream.read(&mut piece) {
                 Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
                 Err(_) if Instant::now() >= deadline => return Err(late()),
-                Ok(0) | Err(_) => return Err(Refusal(Status::BAD_REQUEST, "the request ends too early")),
+                Ok(0) | Err(_) => return Err(Refusal(HttpStatus::BAD_REQUEST, "the request ends too early")),
                 Ok(count) => head.extend_from_slice(&piece[..count]),
             }
             if let Some(end) = head.windows(4).take(MOST_HEAD_BYTES).position(|four| four == b"\r\n\r\n") {
                 return Self::parse(&head[..end + 4]);
             }
             if head.len() > MOST_HEAD_BYTES {
-                return Err(Refusal(Status::HEADERS_TOO_LARGE, "the headers are longer than 8 KiB"));
+                return Err(Refusal(HttpStatus::HEADERS_TOO_LARGE, "the headers are longer than 8 KiB"));
             }
             if Instant::now() >= deadline {
                 return Err(late());
@@ -57,11 +57,11 @@ impl Request {
     fn parse(head: &[u8]) -> Result<Self, Refusal> {
         let mut headers = [httparse::EMPTY_HEADER; MOST_HEADERS];
         let mut parsed = httparse::Request::new(&mut headers);
-        let no_request = Refusal(Status::BAD_REQUEST, "this is no HTTP request");
+        let no_request = Refusal(HttpStatus::BAD_REQUEST, "this is no HTTP request");
         match parsed.parse(head) {
             Ok(httparse::Status::Complete(_)) => {}
             Err(httparse::Error::TooManyHeaders) => {
-                return Err(Refusal(Status::HEADERS_TOO_LARGE, "there are more than 64 headers"));
+                return Err(Refusal(HttpStatus::HEADERS_TOO_LARGE, "there are more than 64 headers"));
             }
             _ => return Err(no_request),
         }
@@ -105,7 +105,7 @@ mod tests {
     #[test]
     fn a_request_is_its_line_and_its_headers() {
         let request =
-            Request::parse(b"GET /frame?save=2&seed=7 HTTP/1.1\r\nHost: here\r\nX: 1\r\nx: 2\r\n\r\n").unwrap();
+            HttpRequest::parse(b"GET /frame?save=2&seed=7 HTTP/1.1\r\nHost: here\r\nX: 1\r\nx: 2\r\n\r\n").unwrap();
         assert_eq!((request.method.as_str(), request.path.as_str()), ("GET", "/frame"));
         assert_eq!((request.asked("save"), request.asked("seed"), request.asked("step")), (Some("2"), Some("7"), None));
         assert_eq!((request.only("host"), request.only("x"), request.all("x").count()), (Some("here"), None, 2));
@@ -119,9 +119,9 @@ mod tests {
             b"GET /a\0b HTTP/1.1\r\n\r\n",
             b"GET / HTTP/1.1\r\nno colon\r\n\r\n",
         ] {
-            assert_eq!(Request::parse(head).unwrap_err().0, Status::BAD_REQUEST, "{head:?}");
+            assert_eq!(HttpRequest::parse(head).unwrap_err().0, HttpStatus::BAD_REQUEST, "{head:?}");
         }
         let many = format!("GET / HTTP/1.1\r\n{}\r\n", "X: 1\r\n".repeat(65));
-        assert_eq!(Request::parse(many.as_bytes()).unwrap_err().0, Status::HEADERS_TOO_LARGE);
+        assert_eq!(HttpRequest::parse(many.as_bytes()).unwrap_err().0, HttpStatus::HEADERS_TOO_LARGE);
     }
 }

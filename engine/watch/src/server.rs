@@ -4,12 +4,12 @@ use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use super::answer::{Answer, Refusal, Status, close, send};
+use super::answer::{HttpAnswer, HttpStatus, Refusal, close, send};
 use super::board::{Board, SavedRun};
 use super::events;
 use super::guard::Guard;
 use super::relearn::Asker;
-use super::request::Request;
+use super::request::HttpRequest;
 use engine::diagnostic::{Diagnostic, Result};
 use engine::digest::hex;
 use engine::experiment::Phase;
@@ -69,7 +69,7 @@ pub fn listen(board: Arc<Board>, asker: Asker, port: u16) -> Result<Address> {
 fn accept(listener: &TcpListener, server: &Arc<Server>) {
     // Whoever holds a copy has a place.
     let places = Arc::new(());
-    let too_many = Answer::text(Status::SERVICE_UNAVAILABLE, "too many connections").bytes(&server.page.policy);
+    let too_many = HttpAnswer::text(HttpStatus::SERVICE_UNAVAILABLE, "too many connections").bytes(&server.page.policy);
     loop {
         let Ok((mut stream, _)) = listener.accept() else {
             std::thread::sleep(REFUSED_WAIT);
@@ -94,7 +94,7 @@ fn accept(listener: &TcpListener, server: &Arc<Server>) {
 /// One request for each connection, so that each is checked from its first byte.
 fn connection(stream: &mut TcpStream, server: &Server) {
     let _ = stream.set_nodelay(true);
-    let admitted = Request::read(stream).and_then(|request| server.guard.admit(&request).map(|()| request));
+    let admitted = HttpRequest::read(stream).and_then(|request| server.guard.admit(&request).map(|()| request));
     let answer = match admitted {
         Ok(request) => match (request.method.as_str(), request.path.as_str()) {
             ("GET", "/live") => return drop(events::tell(stream, &server.board, &server.page.policy)),
@@ -111,24 +111,24 @@ fn connection(stream: &mut TcpStream, server: &Server) {
 }
 
 impl Server {
-    fn answer(&self, request: &Request) -> Answer {
+    fn answer(&self, request: &HttpRequest) -> HttpAnswer {
         match (request.method.as_str(), request.path.as_str()) {
-            ("GET", "/") => Answer::new(Status::OK, "text/html; charset=utf-8", self.page.html.as_bytes()),
-            ("GET", "/track") => self.track(request).unwrap_or_else(Answer::from),
-            ("GET", "/frame") => self.frame(request).unwrap_or_else(Answer::from),
+            ("GET", "/") => HttpAnswer::new(HttpStatus::OK, "text/html; charset=utf-8", self.page.html.as_bytes()),
+            ("GET", "/track") => self.track(request).unwrap_or_else(HttpAnswer::from),
+            ("GET", "/frame") => self.frame(request).unwrap_or_else(HttpAnswer::from),
             ("POST", "/relearn") => {
                 self.asker.again();
-                Answer::text(Status::ACCEPTED, "")
+                HttpAnswer::text(HttpStatus::ACCEPTED, "")
             }
             (_, "/" | "/live" | "/track" | "/frame" | "/relearn") => {
-                Answer::text(Status::METHOD_NOT_ALLOWED, "this is asked in another way")
+                HttpAnswer::text(HttpStatus::METHOD_NOT_ALLOWED, "this is asked in another way")
             }
-            _ => Answer::text(Status::NOT_FOUND, "there is nothing here"),
+            _ => HttpAnswer::text(HttpStatus::NOT_FOUND, "there is nothing here"),
         }
     }
 
     /// The steps of one seed.
-    fn track(&self, request: &Request) -> std::result::Result<Answer, Refusal> {
+    fn track(&self, request: &HttpRequest) -> std::result::Result<HttpAnswer, Refusal> {
         let (save, seed) = (number(request, "save")?, number(request, "seed")?);
         let Some(run) = self.board.saved(save) else { return Err(NOT_SHOWN) };
         let Some(seed) = run.seeds.iter().find(|one| one.seed == seed) else { return Err(NOT_SHOWN) };
@@ -136,7 +136,7 @@ impl Server {
     }
 
     /// One moment in pictures.
-    fn frame(&self, request: &Request) -> std::result::Result<Answer, Refusal> {
+    fn frame(&self, request: &HttpRequest) -> std::result::Result<HttpAnswer, Refusal> {
         let (save, seed, step) = (number(request, "save")?, number(request, "seed")?, number(request, "step")?);
         let step = usize::try_from(step).map_err(|_| NOT_SHOWN)?;
         let Some(run) = self.board.saved(save) else { return Err(NOT_SHOWN) };
@@ -147,22 +147,22 @@ impl Server {
     fn played<T: serde::Serialize>(
         &self,
         job: impl FnOnce() -> Option<Result<T>>,
-    ) -> std::result::Result<Answer, Refusal> {
+    ) -> std::result::Result<HttpAnswer, Refusal> {
         let turn = self.player.lock().unwrap_or_else(PoisonError::into_inner);
         let found = job();
         drop(turn);
         match found.ok_or(NOT_SHOWN)?.map(|found| serde_json::to_vec(&found)) {
-            Ok(Ok(json)) => Ok(Answer::new(Status::OK, "application/json", json)),
-            Ok(Err(_)) => Err(Refusal(Status::INTERNAL_SERVER_ERROR, "this moment cannot be written as JSON")),
-            Err(error) => Ok(Answer::text(Status::INTERNAL_SERVER_ERROR, &error.to_string())),
+            Ok(Ok(json)) => Ok(HttpAnswer::new(HttpStatus::OK, "application/json", json)),
+            Ok(Err(_)) => Err(Refusal(HttpStatus::INTERNAL_SERVER_ERROR, "this moment cannot be written as JSON")),
+            Err(error) => Ok(HttpAnswer::text(HttpStatus::INTERNAL_SERVER_ERROR, &error.to_string())),
         }
     }
 }
 
-const NOT_SHOWN: Refusal = Refusal(Status::NOT_FOUND, "this is not shown any more");
+const NOT_SHOWN: Refusal = Refusal(HttpStatus::NOT_FOUND, "this is not shown any more");
 
-fn number(request: &Request, name: &str) -> std::result::Result<u64, Refusal> {
-    let wrong = Refusal(Status::BAD_REQUEST, "a number is missing in the address");
+fn number(request: &HttpRequest, name: &str) -> std::result::Result<u64, Refusal> {
+    let wrong = Refusal(HttpStatus::BAD_REQUEST, "a number is missing in the address");
     request.asked(name).and_then(|text| text.parse().ok()).ok_or(wrong)
 }
 

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use super::{Diagnostic, Result, SourceText};
 
 /// The most mistakes that one error shows; more are only counted.
-pub const MOST_MISTAKES: usize = 20;
+pub(crate) const MOST_MISTAKES: usize = 20;
 
 /// Which file, and which of its bytes.
 type At = (usize, usize);
@@ -104,7 +104,7 @@ impl Mistakes {
 
     /// All as one error, after one more that ended the search.
     #[must_use]
-    pub fn ended_by(mut self, last: Diagnostic) -> Box<Diagnostic> {
+    pub(crate) fn ended_by(mut self, last: Diagnostic) -> Box<Diagnostic> {
         self.add(last.clone());
         Box::new(self.gathered().unwrap_or(last))
     }

@@ -72,7 +72,7 @@ impl Together {
 
     /// Where they disagreed.
     #[must_use]
-    pub fn into_disagreements(self) -> Disagreements {
+    pub(crate) fn into_disagreements(self) -> Disagreements {
         self.disagreements
     }
 }

@@ -98,7 +98,7 @@ impl<R: Robot> Cycle<R> {
     ///
     /// # Errors
     /// If the script fails.
-    pub fn swap_judge(&mut self, plan: &Plan) -> Result<()> {
+    pub(crate) fn swap_judge(&mut self, plan: &Plan) -> Result<()> {
         self.judge = plan.judge()?;
         self.potential = 0.0;
         self.calibrate()
@@ -207,7 +207,7 @@ impl<R: Robot> Cycle<R> {
 
     /// The beam behind the last rule that fired in the last step, if it read the laser.
     #[must_use]
-    pub fn fired_beam(&self) -> Option<usize> {
+    pub(crate) fn fired_beam(&self) -> Option<usize> {
         self.judge.fired_beam()
     }
 

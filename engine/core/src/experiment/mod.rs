@@ -55,7 +55,6 @@ pub use summary::{ConditionSpread, FigureSpread, Spread, Summary};
 pub use tally::Tally;
 pub use testing::{CombinationTest, Decider, TestRun, frozen, test, test_and_watch, test_choices, test_robot};
 pub use trail::Trail;
-pub use truth::{Spells, Truth};
 pub use untrained::test_untrained;
 
 pub use crate::verdict::WINDOW_STEPS;

@@ -28,7 +28,7 @@ impl RunLog {
 
     /// An empty log with room for at most so many steps of each phase.
     #[must_use]
-    pub fn with_room(plan: &Plan, most: u64) -> Self {
+    pub(crate) fn with_room(plan: &Plan, most: u64) -> Self {
         let learning = Ledger::new(plan.first_leg(), if plan.learns() { plan.first_steps().min(most) } else { 0 });
         Self { learning, test: Ledger::new(plan, plan.settings.run.test_steps.min(most)) }
     }
@@ -41,7 +41,7 @@ impl RunLog {
 
     /// Whether any step was kept.
     #[must_use]
-    pub fn is_kept(&self) -> bool {
+    pub(crate) fn is_kept(&self) -> bool {
         self.learning.len() + self.test.len() > 0
     }
 

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{CombinationFigures, Learned, Plan, Tally, TestRun};
 use crate::stats::Sorted;
-use crate::verdict::{ConditionVerdict, FigureVerdict, RuleTotal, TestFigures, Verdict};
+use crate::verdict::{ConditionVerdict, FigureVerdict, RuleTotal, SuccessVerdict, TestFigures};
 
 /// One seed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -29,7 +29,7 @@ pub struct Summary {
     /// How many states were visited; of a combination, how many its policies know.
     pub states_seen: usize,
     /// Whether it is a success, and why.
-    pub verdict: Verdict,
+    pub verdict: SuccessVerdict,
     /// The frozen policy's test.
     pub test: TestFigures,
     /// The test of a robot that knows nothing: of 2,000 steps at most.

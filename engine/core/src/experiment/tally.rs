@@ -2,9 +2,9 @@
 
 use super::Step;
 use crate::outcome::Endings;
-use crate::verdict::{Counts, WINDOW_STEPS, Window};
+use crate::verdict::{WINDOW_STEPS, Window, WindowCounts};
 
-/// Counts over a whole run.
+/// WindowCounts over a whole run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tally {
     /// All windows, first to last.
@@ -17,7 +17,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Counts for so many rules over so many steps; nothing is allocated later.
+    /// WindowCounts for so many rules over so many steps; nothing is allocated later.
     #[must_use]
     pub fn new(rules: usize, steps: u64) -> Self {
         let windows = steps.div_ceil(WINDOW_STEPS).min(1 << 20) as usize;
@@ -25,7 +25,7 @@ impl Tally {
         Self { windows: Vec::with_capacity(windows), fired: vec![0; rules], by_rule, fired_by_rule }
     }
 
-    /// Counts one step; true if it ended a window.
+    /// WindowCounts one step; true if it ended a window.
     pub fn count(&mut self, step: &Step, fired: &[Option<f64>]) -> bool {
         if self.windows.last().is_none_or(|window| window.steps == WINDOW_STEPS) {
             self.windows.push(Window::default());
@@ -78,15 +78,15 @@ impl Tally {
 
     /// By rule: how often it fired in one window.
     #[must_use]
-    pub fn fired_in(&self, window: usize) -> &[u32] {
+    pub(crate) fn fired_in(&self, window: usize) -> &[u32] {
         &self.fired_by_rule[window * self.fired.len()..(window + 1) * self.fired.len()]
     }
 
     /// Every window, with how often each rule fired in it.
     #[must_use]
-    pub fn counts(&self) -> Vec<Counts<'_>> {
+    pub fn counts(&self) -> Vec<WindowCounts<'_>> {
         let windows = self.windows.iter().enumerate();
-        windows.map(|(index, window)| Counts { window: *window, fired: self.fired_in(index) }).collect()
+        windows.map(|(index, window)| WindowCounts { window: *window, fired: self.fired_in(index) }).collect()
     }
 
     /// How attempts ended, over the whole run.

@@ -18,44 +18,44 @@ const STANDING_M: f64 = 0.2;
 
 /// Follows the true pose through a test.
 #[derive(Debug, Clone)]
-pub struct Truth {
+pub(super) struct Truth {
     layout: Arc<Layout>,
     /// Along the lap route, if there is one.
-    pub along: Option<Along>,
+    pub(super) along: Option<Along>,
     last: Pose,
     /// Length of the path, metres.
-    pub distance_m: f64,
+    pub(super) distance_m: f64,
     spell: Spell,
     spell_steps: u64,
     /// Whole spells, and of these spinning, standing, circling, and going backwards along the route.
-    pub spells: Spells,
+    pub(super) spells: Spells,
     /// Distance to the prey after each step, metres; empty without a prey.
-    pub prey_m: Vec<f32>,
+    pub(super) prey_m: Vec<f32>,
 }
 
 /// Where a robot was beside the lap route.
 #[derive(Debug, Clone, Copy)]
-pub struct Along {
+pub(super) struct Along {
     progress: RouteProgress,
     /// Steps that ended farther from it than its half width.
-    pub off_steps: u64,
+    pub(super) off_steps: u64,
     /// Sum of the distances from it after each step, metres.
-    pub offsets_m: f64,
+    pub(super) offsets_m: f64,
 }
 
 /// Counts of spells of 20 s.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Spells {
+pub(super) struct Spells {
     /// All whole spells.
-    pub all: u64,
+    pub(super) all: u64,
     /// Full turn or more on a radius below 0.3 m.
-    pub spinning: u64,
+    pub(super) spinning: u64,
     /// Less than 0.2 m of path and no full turn.
-    pub standing: u64,
+    pub(super) standing: u64,
     /// Full turn or more on a wider radius, ending within a quarter of the path of where it began.
-    pub circling: u64,
+    pub(super) circling: u64,
     /// Net progress along the route below zero.
-    pub backwards: u64,
+    pub(super) backwards: u64,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -70,7 +70,7 @@ struct Spell {
 impl Truth {
     /// Begins at the robot's present pose; `None` for a robot that does not know where it is.
     #[must_use]
-    pub fn new(robot: &impl Robot, layout: &Arc<Layout>, period_s: f64, steps: u64) -> Option<Self> {
+    pub(super) fn new(robot: &impl Robot, layout: &Arc<Layout>, period_s: f64, steps: u64) -> Option<Self> {
         let pose = robot.whereabouts()?.pose;
         let along = layout.lap.map(|lap| {
             let progress = RouteProgress::new(&layout.routes[lap], Point2::new(pose.x_m, pose.y_m));
@@ -121,7 +121,7 @@ impl Truth {
 
     /// Signed progress along the lap route, metres; `None` in a world without one.
     #[must_use]
-    pub fn net_m(&self) -> Option<f64> {
+    pub(super) fn net_m(&self) -> Option<f64> {
         self.along.as_ref().map(|along| along.progress.net_m())
     }
 

@@ -76,7 +76,7 @@ impl Chain {
 
     /// Everything that is wrong with a chain as it is written, before any filter is tried; in the order of the stages.
     #[must_use]
-    pub fn faults(settings: &[FilterSettings], catalogue: &Catalogue) -> Vec<ChainError> {
+    pub(crate) fn faults(settings: &[FilterSettings], catalogue: &Catalogue) -> Vec<ChainError> {
         let mut faults = Vec::new();
         let mut before: Vec<&'static Descriptor> = Vec::with_capacity(settings.len());
         // What comes out of the stage before; unknown behind an unknown filter.

@@ -38,13 +38,13 @@ pub struct Facts {
 impl Facts {
     /// The range of one beam, metres; 0 if there is no such beam.
     #[must_use]
-    pub fn beam_m(&self, beam: usize) -> f64 {
+    pub(crate) fn beam_m(&self, beam: usize) -> f64 {
         self.ranges_m.get(beam).map_or(0.0, |&range| decimal(range))
     }
 
     /// The ranges of the beams `from` to `to`, both included, metres; empty if there are no such beams.
     #[must_use]
-    pub fn sector_m(&self, from: usize, to: usize) -> &[f32] {
+    pub(crate) fn sector_m(&self, from: usize, to: usize) -> &[f32] {
         self.ranges_m.get(from..=to).unwrap_or_default()
     }
 

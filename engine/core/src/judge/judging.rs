@@ -138,7 +138,7 @@ impl Judge {
 
     /// The beam behind the last rule that fired in the last step, if it read the laser. Allocates nothing.
     #[must_use]
-    pub fn fired_beam(&self) -> Option<usize> {
+    pub(crate) fn fired_beam(&self) -> Option<usize> {
         let last = self.fired.iter().rposition(Option::is_some)?;
         readings::beam(self.present.parts(last), self.present.inputs())
     }

@@ -75,13 +75,13 @@ impl Combined {
     }
 
     /// How many states each policy met.
-    pub fn known_states(&self) -> impl Iterator<Item = usize> {
+    pub(crate) fn known_states(&self) -> impl Iterator<Item = usize> {
         self.members.iter().map(|member| member.iter().flatten().count())
     }
 
     /// By policy: its own best action in the last states; `None` where it did not know its state.
     #[must_use]
-    pub fn votes(&self) -> &[Option<usize>] {
+    pub(crate) fn votes(&self) -> &[Option<usize>] {
         &self.votes
     }
 

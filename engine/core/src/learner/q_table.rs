@@ -70,7 +70,7 @@ impl QTable {
     }
 
     /// Halves what is known: every value, and the visits of each state, of which no more than `most` count.
-    pub fn halve(&mut self, most: u64) {
+    pub(crate) fn halve(&mut self, most: u64) {
         self.values.iter_mut().for_each(|value| *value *= 0.5);
         self.visits.iter_mut().for_each(|visits| *visits = (*visits).min(most) / 2);
     }

@@ -8,7 +8,7 @@ use crate::judge::rule::CompiledRule;
 use crate::judge::{Judge, RuleText, reach};
 use crate::outcome::Then;
 use crate::settings::{LaserSettings, Settings};
-use crate::verdict::{Condition, Endable, Success};
+use crate::verdict::{Endable, Success, SuccessCondition};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ pub struct Behaviour {
     rules: Vec<RuleText>,
     outline: ScriptOutline,
     compiled: Arc<CompiledScript>,
-    success: Vec<Condition>,
+    success: Vec<SuccessCondition>,
     endable: Endable,
 }
 
@@ -45,7 +45,7 @@ impl Behaviour {
         Self { name: name.to_owned(), settings, places, rules, outline, compiled, success: Vec::new(), endable }
     }
 
-    pub(super) fn with_success(self, success: Vec<Condition>) -> Self {
+    pub(super) fn with_success(self, success: Vec<SuccessCondition>) -> Self {
         Self { success, ..self }
     }
 

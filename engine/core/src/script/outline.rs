@@ -126,7 +126,7 @@ impl ScriptOutline {
 impl Condition {
     /// The comparisons in it.
     #[must_use]
-    pub fn comparisons(&self) -> Vec<&Compared> {
+    pub(crate) fn comparisons(&self) -> Vec<&Compared> {
         match self {
             Self::Compare(compared) => vec![compared],
             Self::All(parts) | Self::Any(parts) => parts.iter().flat_map(Self::comparisons).collect(),

@@ -7,7 +7,7 @@ use crate::judge::fact_table::{FACTS, Fact, GROUPS};
 use crate::judge::functions::FUNCTIONS;
 use crate::judge::sandbox;
 use crate::settings::{SETTINGS, Settings};
-use crate::verdict::{FIGURES, Figure};
+use crate::verdict::{FIGURES, TestFigure};
 use std::fmt::Write;
 
 /// The page about the script language: `scripts/README.md`.
@@ -70,7 +70,7 @@ fn facts() -> String {
 }
 
 fn figures() -> String {
-    let row = |figure: &Figure| {
+    let row = |figure: &TestFigure| {
         let name = if figure.is_of_rule() { format!("{}(\"rule\")", figure.name) } else { figure.name.to_owned() };
         let of = match (figure.needs_route(), figure.is_of_windows()) {
             (true, _) => "a route",

@@ -10,7 +10,7 @@ use crate::judge::explain::mistake;
 use crate::judge::expression::{Arithmetic, Comparison};
 use crate::judge::fact_table::is_group;
 use crate::judge::functions::{OF_ONE, OF_ONE_FRACTION, OF_TWO, OF_TWO_FRACTION};
-use crate::verdict::{Condition, FIGURES, Figure, FigureUse, Subject, Term};
+use crate::verdict::{FIGURES, FigureUse, Subject, SuccessCondition, Term, TestFigure};
 use rhai::{AST, Expr, FnCallExpr, Position, Scope};
 
 const CODE: &str = "E-SCRIPT-SUCCESS";
@@ -23,9 +23,9 @@ pub(super) fn conditions(
     rules: &[&str],
     spoilt: &Spoilt<'_>,
     mistakes: &mut Mistakes,
-) -> Vec<Condition> {
+) -> Vec<SuccessCondition> {
     let compiler = SuccessCompiler { code, constants, rules };
-    let mut conditions: Vec<Condition> = Vec::new();
+    let mut conditions: Vec<SuccessCondition> = Vec::new();
     for written in &written_successes(ast.statements()) {
         let bytes = span(code, written.condition);
         if spoilt.touches(&bytes, mistakes) {
@@ -42,7 +42,7 @@ pub(super) fn conditions(
         match compiler.condition(written) {
             Ok(term) if mistakes.count() == count => {
                 let text = code.source.text[bytes.clone()].split_whitespace().collect::<Vec<_>>().join(" ");
-                conditions.push(Condition { name: name.to_owned(), text, span: Some(bytes), term });
+                conditions.push(SuccessCondition { name: name.to_owned(), text, span: Some(bytes), term });
             }
             Ok(_) => {}
             Err(wrong) => mistakes.add(*wrong),
@@ -159,9 +159,9 @@ impl SuccessCompiler<'_> {
             root => return self.constant(root, &access),
         };
         match access.links.as_slice() {
-            [Link::Property(name, position)] => match Figure::of(name) {
+            [Link::Property(name, position)] => match TestFigure::of(name) {
                 Some(figure) if !figure.is_of_rule() => {
-                    Ok(Kinded::Number(Term::Figure(FigureUse { subject, figure, rule: 0 })))
+                    Ok(Kinded::Number(Term::TestFigure(FigureUse { subject, figure, rule: 0 })))
                 }
                 Some(figure) => {
                     self.wrong(*position, format!("'{name}' needs the name of a rule"), "here", of_rule(figure))
@@ -178,7 +178,7 @@ impl SuccessCompiler<'_> {
 
     fn of_rule(&self, subject: Subject, call: &FnCallExpr, position: Position) -> Compiled<Kinded> {
         let name = call.name.as_str();
-        let figure = match Figure::of(name) {
+        let figure = match TestFigure::of(name) {
             Some(figure) if figure.is_of_rule() => figure,
             Some(_) => {
                 let message = format!("'{name}' is a figure, not a function");
@@ -190,7 +190,7 @@ impl SuccessCompiler<'_> {
             return self.wrong(position, format!("'{name}' needs the name of a rule"), "here", of_rule(figure));
         };
         match self.rules.iter().position(|own| *own == rule.as_str()) {
-            Some(rule) => Ok(Kinded::Number(Term::Figure(FigureUse { subject, figure, rule }))),
+            Some(rule) => Ok(Kinded::Number(Term::TestFigure(FigureUse { subject, figure, rule }))),
             None => {
                 let message = format!("there is no rule \"{}\"", printable(rule));
                 let help = match nearest_name(rule, self.rules.iter().copied()) {
@@ -234,7 +234,7 @@ impl SuccessCompiler<'_> {
     }
 }
 
-fn of_rule(figure: &Figure) -> String {
+fn of_rule(figure: &TestFigure) -> String {
     format!("write test.{}(\"name of the rule\") <= 5", figure.name)
 }
 

@@ -28,7 +28,7 @@ impl Unread {
 
     /// Whether any of what this set-up call sets is not read.
     #[must_use]
-    pub fn any_of(&self, call: &str) -> bool {
+    pub(crate) fn any_of(&self, call: &str) -> bool {
         self.0.iter().any(|(group, _)| group == call)
     }
 

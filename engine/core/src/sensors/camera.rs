@@ -113,7 +113,7 @@ impl Camera {
     }
 
     /// Continues as if `frames` frames had been rendered.
-    pub fn set_frames(&mut self, frames: u64) {
+    pub(crate) fn set_frames(&mut self, frames: u64) {
         self.frame = frames;
     }
 

@@ -89,7 +89,7 @@ impl Footprint {
 
     /// How far its middle lies ahead of the origin, metres.
     #[must_use]
-    pub fn ahead_m(&self) -> f64 {
+    pub(crate) fn ahead_m(&self) -> f64 {
         match *self {
             Self::Rectangle { ahead_m, .. } => ahead_m,
             Self::Round { .. } => 0.0,

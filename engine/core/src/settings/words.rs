@@ -11,7 +11,7 @@ macro_rules! words {
 
         impl $name {
             /// Every word, in the order of the variants, as scripts and files spell it.
-            pub const WORDS: &[&str] = &[$($text),+];
+            pub(crate) const WORDS: &[&str] = &[$($text),+];
             /// Every variant, in the same order.
             pub const ALL: &[Self] = &[$(Self::$word),+];
 

@@ -1,7 +1,7 @@
 //! What is called success where a script does not say it.
 
-use super::figures::Figure;
-use super::success::Condition;
+use super::figures::TestFigure;
+use super::success::SuccessCondition;
 use super::term::{FigureUse, Subject, Term};
 use crate::judge::expression::{Arithmetic, Comparison};
 
@@ -25,17 +25,17 @@ const MOST_IDLE: f64 = 0.5;
 
 /// The conditions for a script whose attempts may end so, in a world with a lap route or without one; `seconds` is how long
 /// the test takes. None if nothing can be told.
-pub(crate) fn default_conditions(endable: Endable, has_route: bool, seconds: f64) -> Vec<Condition> {
+pub(crate) fn default_conditions(endable: Endable, has_route: bool, seconds: f64) -> Vec<SuccessCondition> {
     use Comparison::{GreaterOrEqual, Less, LessOrEqual};
     use Subject::{Test, Untrained};
     let figure = |subject, name| {
-        let figure = Figure::of(name);
-        figure.map_or(Term::Constant(f64::NAN), |figure| Term::Figure(FigureUse { subject, figure, rule: 0 }))
+        let figure = TestFigure::of(name);
+        figure.map_or(Term::Constant(f64::NAN), |figure| Term::TestFigure(FigureUse { subject, figure, rule: 0 }))
     };
     let compare = |comparison, a, b| Term::Compare(comparison, Box::new([a, b]));
     let than = |comparison, subject, name, limit| compare(comparison, figure(subject, name), Term::Constant(limit));
     let mut conditions = Vec::new();
-    let mut ask = |name: &str, text: &str, term| conditions.push(Condition::by_default(name, text, term));
+    let mut ask = |name: &str, text: &str, term| conditions.push(SuccessCondition::by_default(name, text, term));
     if endable.failure {
         let few = than(LessOrEqual, Test, "failures_per_1000", FEW_FAILURES);
         ask("fails little", "test.failures_per_1000 <= 10", few);

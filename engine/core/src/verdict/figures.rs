@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::window::Counts;
+use super::window::WindowCounts;
 
 /// The frozen policy, judged by the script and by the truth.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -102,7 +102,7 @@ pub(crate) enum Source {
 
 /// A figure that scripts can ask for: `test.NAME`, `untrained.NAME`.
 #[derive(Debug)]
-pub struct Figure {
+pub struct TestFigure {
     /// Its name.
     pub name: &'static str,
     /// The unit, in words; empty for numbers without one.
@@ -111,10 +111,10 @@ pub struct Figure {
     pub about: &'static str,
     pub(crate) source: Source,
     /// The same figure of a window of learning, where that is defined.
-    pub(crate) window: Option<fn(&Counts<'_>, usize) -> f64>,
+    pub(crate) window: Option<fn(&WindowCounts<'_>, usize) -> f64>,
 }
 
-impl Figure {
+impl TestFigure {
     /// The figure of a name.
     #[must_use]
     pub fn of(name: &str) -> Option<&'static Self> {
@@ -123,25 +123,25 @@ impl Figure {
 
     /// Whether it is asked for with the name of a rule.
     #[must_use]
-    pub fn is_of_rule(&self) -> bool {
+    pub(crate) fn is_of_rule(&self) -> bool {
         matches!(self.source, Source::Rule(_))
     }
 
     /// Whether only a world with a lap route has it.
     #[must_use]
-    pub fn needs_route(&self) -> bool {
+    pub(crate) fn needs_route(&self) -> bool {
         matches!(self.source, Source::Route(_))
     }
 
     /// Whether a window of learning has it too.
     #[must_use]
-    pub fn is_of_windows(&self) -> bool {
+    pub(crate) fn is_of_windows(&self) -> bool {
         self.window.is_some()
     }
 }
 
-const fn test(name: &'static str, unit: &'static str, get: fn(&TestFigures) -> f64, about: &'static str) -> Figure {
-    Figure { name, unit, about, source: Source::Test(get), window: None }
+const fn test(name: &'static str, unit: &'static str, get: fn(&TestFigures) -> f64, about: &'static str) -> TestFigure {
+    TestFigure { name, unit, about, source: Source::Test(get), window: None }
 }
 
 const fn route(
@@ -149,18 +149,18 @@ const fn route(
     unit: &'static str,
     get: fn(&TestFigures) -> Option<f64>,
     about: &'static str,
-) -> Figure {
-    Figure { name, unit, about, source: Source::Route(get), window: None }
+) -> TestFigure {
+    TestFigure { name, unit, about, source: Source::Route(get), window: None }
 }
 
-impl Figure {
-    const fn and_of_windows(self, window: fn(&Counts<'_>, usize) -> f64) -> Self {
+impl TestFigure {
+    const fn and_of_windows(self, window: fn(&WindowCounts<'_>, usize) -> f64) -> Self {
         Self { window: Some(window), ..self }
     }
 }
 
 /// Every figure, in the order of the reference.
-pub const FIGURES: &[Figure] = &[
+pub const FIGURES: &[TestFigure] = &[
     test("attempts", "", |test| test.attempts() as f64, "How many attempts ended."),
     test("failures_per_1000", "", |test| test.failures_per_1000, "Failures in 1,000 steps.")
         .and_of_windows(|counts, _| counts.per_1000(counts.window.endings.failures)),
@@ -170,7 +170,7 @@ pub const FIGURES: &[Figure] = &[
         .and_of_windows(|counts, _| counts.per_1000(counts.window.endings.restarts)),
     test("goal_rate", "share", |test| test.goal_rate, "Goals as a share of the attempts that ended; 0 if none did.")
         .and_of_windows(|counts, _| counts.goal_rate()),
-    Figure {
+    TestFigure {
         name: "goal_s",
         unit: "seconds",
         about: "Median duration of the attempts that reached a goal; the time of the whole test if none did.",
@@ -179,7 +179,7 @@ pub const FIGURES: &[Figure] = &[
     },
     test("reward_per_1000", "", |test| test.reinforcement_per_1000, "Sum of the rewards in 1,000 steps.")
         .and_of_windows(|counts, _| counts.window.reinforcement * 1000.0 / counts.window.steps.max(1) as f64),
-    Figure {
+    TestFigure {
         name: "per_1000",
         unit: "",
         about: "How often a rule fired in 1,000 steps: test.per_1000(\"too close\").",

@@ -4,19 +4,19 @@ use serde::{Deserialize, Serialize};
 
 /// Whether a test is a success, and why.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Verdict {
+pub struct SuccessVerdict {
     /// Null where it cannot be told.
     pub success: Option<bool>,
-    /// Why.
-    pub why: Why,
+    /// Because.
+    pub why: Because,
     /// Every condition, with its figures.
     pub conditions: Vec<ConditionVerdict>,
 }
 
-/// Why a verdict is what it is.
+/// Because a verdict is what it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Why {
+pub enum Because {
     /// Every condition holds, and not all of them hold of a robot that knows nothing.
     Holds,
     /// A condition does not hold.
@@ -55,7 +55,7 @@ pub struct FigureVerdict {
     pub untrained: Option<f64>,
 }
 
-impl Verdict {
+impl SuccessVerdict {
     /// Whether it is a success, and told.
     #[must_use]
     pub fn is_success(&self) -> bool {

@@ -12,11 +12,11 @@ mod success;
 mod term;
 mod window;
 
-pub use figures::{FIGURES, Figure, RuleTotal, TestFigures};
-pub use judged::{ConditionVerdict, FigureVerdict, Verdict, Why};
-pub use success::{Condition, Success};
+pub use figures::{FIGURES, RuleTotal, TestFigure, TestFigures};
+pub use judged::{Because, ConditionVerdict, FigureVerdict, SuccessVerdict};
+pub use success::{Success, SuccessCondition};
 pub use term::Subject;
-pub use window::{Counts, WINDOW_STEPS, Window};
+pub use window::{WINDOW_STEPS, Window, WindowCounts};
 
 pub(crate) use default::Endable;
 pub(crate) use term::{FigureUse, Term};

@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use super::default::{Endable, default_conditions};
 use super::figures::TestFigures;
-use super::judged::{ConditionVerdict, FigureVerdict, Verdict, Why};
-use super::term::{Measured, Subject, Term};
-use super::window::{Counts, WINDOW_STEPS};
+use super::judged::{Because, ConditionVerdict, FigureVerdict, SuccessVerdict};
+use super::term::{SideBySide, Subject, Term};
+use super::window::{WINDOW_STEPS, WindowCounts};
 use crate::outcome::Endings;
 
 /// So many good windows in a row are asked for.
@@ -20,7 +20,7 @@ const MOST_GOALS: f64 = 0.8;
 
 /// One condition.
 #[derive(Debug, Clone)]
-pub struct Condition {
+pub struct SuccessCondition {
     /// Its name.
     pub name: String,
     /// What must hold, as it stands in the script.
@@ -30,7 +30,7 @@ pub struct Condition {
     pub(crate) term: Term,
 }
 
-impl Condition {
+impl SuccessCondition {
     pub(super) fn by_default(name: &str, text: &str, term: Term) -> Self {
         Self { name: name.to_owned(), text: text.to_owned(), span: None, term }
     }
@@ -50,7 +50,7 @@ impl Condition {
 /// What is called success.
 #[derive(Debug, Clone)]
 pub struct Success {
-    conditions: Vec<Condition>,
+    conditions: Vec<SuccessCondition>,
     endable: Endable,
     /// How long the test takes, seconds of the robot.
     seconds: f64,
@@ -58,40 +58,40 @@ pub struct Success {
 
 impl Success {
     /// The script's own conditions, or the default in a world with a lap route or without one.
-    pub(crate) fn new(own: &[Condition], endable: Endable, has_route: bool, seconds: f64) -> Self {
+    pub(crate) fn new(own: &[SuccessCondition], endable: Endable, has_route: bool, seconds: f64) -> Self {
         let conditions = if own.is_empty() { default_conditions(endable, has_route, seconds) } else { own.to_vec() };
         Self { conditions, endable, seconds }
     }
 
     /// All of them must hold; none if a script says nothing by which success could be told.
     #[must_use]
-    pub fn conditions(&self) -> &[Condition] {
+    pub fn conditions(&self) -> &[SuccessCondition] {
         &self.conditions
     }
 
     /// Whether a test is a success, beside what a robot that knows nothing does in the same test.
     #[must_use]
-    pub fn verdict(&self, test: &TestFigures, untrained: &TestFigures) -> Verdict {
+    pub fn verdict(&self, test: &TestFigures, untrained: &TestFigures) -> SuccessVerdict {
         let (own, chance) = (self.of(test, untrained), self.of(untrained, untrained));
         let conditions: Vec<_> = self.conditions.iter().map(|condition| self.judged(condition, own, chance)).collect();
         let holds = conditions.iter().all(|condition| condition.holds);
         let why = if conditions.is_empty() {
-            Why::NothingToTellBy
-        } else if self.conditions.iter().all(Condition::reads_only_rewards) {
-            Why::RewardOnly
+            Because::NothingToTellBy
+        } else if self.conditions.iter().all(SuccessCondition::reads_only_rewards) {
+            Because::RewardOnly
         } else if !holds {
-            Why::Fails
+            Because::Fails
         } else if conditions.iter().all(|condition| condition.untrained) {
-            Why::UntrainedToo
+            Because::UntrainedToo
         } else {
-            Why::Holds
+            Because::Holds
         };
         let success = match why {
-            Why::Holds => Some(true),
-            Why::Fails => Some(false),
-            Why::UntrainedToo | Why::RewardOnly | Why::NothingToTellBy => None,
+            Because::Holds => Some(true),
+            Because::Fails => Some(false),
+            Because::UntrainedToo | Because::RewardOnly | Because::NothingToTellBy => None,
         };
-        Verdict { success, why, conditions }
+        SuccessVerdict { success, why, conditions }
     }
 
     /// Whether some policy's test meets all conditions.
@@ -101,11 +101,11 @@ impl Success {
             && self.conditions.iter().all(|condition| condition.term.holds_in(self.of(test, untrained)))
     }
 
-    fn of<'a>(&self, test: &'a TestFigures, untrained: &'a TestFigures) -> Measured<'a> {
-        Measured { test, untrained, seconds: self.seconds }
+    fn of<'a>(&self, test: &'a TestFigures, untrained: &'a TestFigures) -> SideBySide<'a> {
+        SideBySide { test, untrained, seconds: self.seconds }
     }
 
-    fn judged(&self, condition: &Condition, own: Measured<'_>, chance: Measured<'_>) -> ConditionVerdict {
+    fn judged(&self, condition: &SuccessCondition, own: SideBySide<'_>, chance: SideBySide<'_>) -> ConditionVerdict {
         let mut figures: Vec<FigureVerdict> = Vec::new();
         for asked in condition.term.figures() {
             let rule = asked.figure.is_of_rule().then(|| own.test.rules.get(asked.rule)).flatten();
@@ -131,10 +131,10 @@ impl Success {
     /// script's own conditions hold, as far as windows have their figures; else those with at most one failure, and goals
     /// where goals can be reached. Nothing if it is never, or cannot be told.
     #[must_use]
-    pub fn learned_at(&self, windows: &[Counts<'_>]) -> Option<u64> {
-        let own: Vec<&Condition> =
+    pub fn learned_at(&self, windows: &[WindowCounts<'_>]) -> Option<u64> {
+        let own: Vec<&SuccessCondition> =
             self.conditions.iter().filter(|own| own.span.is_some() && own.is_of_windows()).collect();
-        let good = |four: &[Counts<'_>]| {
+        let good = |four: &[WindowCounts<'_>]| {
             let ended: Endings = four.iter().map(|counts| counts.window.endings).sum();
             let few = four.iter().all(|counts| counts.window.endings.failures <= FEW_FAILURES);
             match self.endable {

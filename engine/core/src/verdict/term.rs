@@ -1,7 +1,7 @@
 //! What a condition of success computes from figures: a small tree, with no step in it.
 
-use super::figures::{Figure, Source, TestFigures};
-use super::window::Counts;
+use super::figures::{Source, TestFigure, TestFigures};
+use super::window::WindowCounts;
 use crate::judge::expression::{Arithmetic, Comparison};
 
 /// Whose figure is asked for.
@@ -28,14 +28,14 @@ impl Subject {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FigureUse {
     pub subject: Subject,
-    pub figure: &'static Figure,
+    pub figure: &'static TestFigure,
     /// The number of the rule that is named; 0 where none is.
     pub rule: usize,
 }
 
 /// Both sides' figures.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Measured<'a> {
+pub(crate) struct SideBySide<'a> {
     pub test: &'a TestFigures,
     pub untrained: &'a TestFigures,
     /// How long the test took, seconds of the robot.
@@ -46,7 +46,7 @@ pub(crate) struct Measured<'a> {
 #[derive(Debug, Clone)]
 pub(crate) enum Term {
     Constant(f64),
-    Figure(FigureUse),
+    TestFigure(FigureUse),
     Negate(Box<Term>),
     Binary(Arithmetic, Box<[Term; 2]>),
     OfOne(fn(f64) -> f64, Box<Term>),
@@ -64,7 +64,7 @@ impl Term {
         let pair = |pair: &[Self; 2]| Some((pair[0].value(read)?, pair[1].value(read)?));
         match self {
             Self::Constant(value) => Some(*value),
-            Self::Figure(figure) => read(figure),
+            Self::TestFigure(figure) => read(figure),
             Self::Negate(of) => Some(-of.value(read)?),
             Self::Binary(operator, sides) => pair(sides).map(|(a, b)| operator.apply(a, b)),
             Self::OfOne(function, of) => Some(function(of.value(read)?)),
@@ -86,12 +86,12 @@ impl Term {
     }
 
     /// Whether it holds of a test; a figure that is missing holds nothing.
-    pub(crate) fn holds_in(&self, measured: Measured<'_>) -> bool {
+    pub(crate) fn holds_in(&self, measured: SideBySide<'_>) -> bool {
         self.holds(&|figure| figure.read(measured)).unwrap_or(false)
     }
 
     /// Whether it holds of a window of learning.
-    pub(crate) fn holds_in_window(&self, counts: &Counts<'_>) -> bool {
+    pub(crate) fn holds_in_window(&self, counts: &WindowCounts<'_>) -> bool {
         self.holds(&|asked| Some(asked.figure.window?(counts, asked.rule))).unwrap_or(false)
     }
 
@@ -99,7 +99,7 @@ impl Term {
     pub(crate) fn figures(&self) -> Vec<FigureUse> {
         match self {
             Self::Constant(_) | Self::Flag(_) => Vec::new(),
-            Self::Figure(figure) => vec![*figure],
+            Self::TestFigure(figure) => vec![*figure],
             Self::Negate(of) | Self::OfOne(_, of) | Self::Not(of) => of.figures(),
             Self::Binary(_, sides) | Self::OfTwo(_, sides) | Self::Compare(_, sides) => {
                 sides.iter().flat_map(Self::figures).collect()
@@ -111,7 +111,7 @@ impl Term {
 
 impl FigureUse {
     /// Its value in a test.
-    pub(crate) fn read(&self, measured: Measured<'_>) -> Option<f64> {
+    pub(crate) fn read(&self, measured: SideBySide<'_>) -> Option<f64> {
         let test = match self.subject {
             Subject::Test => measured.test,
             Subject::Untrained => measured.untrained,

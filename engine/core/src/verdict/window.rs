@@ -2,7 +2,7 @@
 
 use crate::outcome::Endings;
 
-/// Steps in a window: each point of the paper's Figure 3 is the reinforcement of the last 400 steps.
+/// Steps in a window: each point of the paper's TestFigure 3 is the reinforcement of the last 400 steps.
 pub const WINDOW_STEPS: u64 = 400;
 
 /// One window.
@@ -20,14 +20,14 @@ pub struct Window {
 
 /// A window with how often each rule fired in it.
 #[derive(Debug, Clone, Copy)]
-pub struct Counts<'a> {
+pub struct WindowCounts<'a> {
     /// The window.
     pub window: Window,
     /// By rule.
     pub fired: &'a [u32],
 }
 
-impl Counts<'_> {
+impl WindowCounts<'_> {
     pub(super) fn per_1000(&self, count: u64) -> f64 {
         count as f64 * 1000.0 / self.window.steps.max(1) as f64
     }

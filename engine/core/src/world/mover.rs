@@ -28,7 +28,7 @@ impl Mover {
 
     /// How far along its route it is at a time, metres; more than the length after the first lap.
     #[must_use]
-    pub fn along_m(&self, route: &Route, time_s: f64) -> f64 {
+    pub(crate) fn along_m(&self, route: &Route, time_s: f64) -> f64 {
         let along_m = self.offset_m + self.speed_m_per_s * time_s;
         if route.closed { along_m } else { along_m.min(route.length_m()) }
     }

@@ -61,7 +61,7 @@ impl RouteProgress {
 
     /// Whether that is within the route's half width.
     #[must_use]
-    pub fn is_on(&self) -> bool {
+    pub(crate) fn is_on(&self) -> bool {
         self.is_on
     }
 

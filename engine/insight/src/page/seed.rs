@@ -7,7 +7,7 @@ use super::track::{Moments, ScanShape, Track, TrackSource};
 use engine::diagnostic::Result;
 use engine::experiment::{Ledger, Phase, Plan, Tally};
 use engine::learner::Policy;
-use engine::verdict::{ConditionVerdict, TestFigures, Verdict};
+use engine::verdict::{ConditionVerdict, SuccessVerdict, TestFigures};
 
 use crate::verdict_words::{figures, headline};
 
@@ -84,8 +84,8 @@ pub struct ConditionView {
     pub figures: String,
 }
 
-impl From<&Verdict> for VerdictView {
-    fn from(verdict: &Verdict) -> Self {
+impl From<&SuccessVerdict> for VerdictView {
+    fn from(verdict: &SuccessVerdict) -> Self {
         let condition = |condition: &ConditionVerdict| ConditionView {
             name: condition.name.clone(),
             condition: condition.condition.clone(),

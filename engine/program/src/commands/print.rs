@@ -2,7 +2,7 @@
 
 use engine::diagnostic::printable;
 use engine::experiment::{CombinationFigures, MemberFigures, Plan, Spread, Summary};
-use engine::verdict::{TestFigures, Verdict, Why};
+use engine::verdict::{Because, SuccessVerdict, TestFigures};
 use insight::verdict_words::{figures, headline, learned, spread_of_figures, tells_learning};
 
 use crate::console::{Console, ConsoleError};
@@ -41,7 +41,7 @@ pub(super) fn print_one(console: &mut Console, plan: &Plan, summary: &Summary) -
 }
 
 /// Whether a test is a success, and by which figures.
-pub(super) fn print_verdict(console: &mut Console, verdict: &Verdict) -> Printed {
+pub(super) fn print_verdict(console: &mut Console, verdict: &SuccessVerdict) -> Printed {
     console.line(&format!("success:   {}", headline(verdict)))?;
     let name = |name: &str| printable(name);
     let width = verdict.conditions.iter().map(|condition| name(&condition.name).chars().count()).max().unwrap_or(0);
@@ -72,7 +72,7 @@ pub(super) fn print_many(console: &mut Console, spread: &Spread) -> Printed {
             spread_of_figures(condition)
         ))?;
     }
-    let untold = spread.seeds.iter().filter(|seed| seed.verdict.why == Why::UntrainedToo).count();
+    let untold = spread.seeds.iter().filter(|seed| seed.verdict.why == Because::UntrainedToo).count();
     if untold > 0 {
         console.line(&format!(
             "warning:   with {untold} of {count} seeds a robot that knows nothing meets every condition too"

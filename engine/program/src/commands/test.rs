@@ -5,7 +5,7 @@ use std::sync::atomic::Ordering;
 use engine::diagnostic::Diagnostic;
 use engine::experiment::{CertaintyGrid, Decider, Overrides, test_untrained};
 use engine::filter::Sources;
-use engine::verdict::{TestFigures, Verdict};
+use engine::verdict::{SuccessVerdict, TestFigures};
 use insight::folder::TestFolder;
 use insight::store::StoredRun;
 use pack::{Evidence, Pack, Runnable};
@@ -23,7 +23,7 @@ struct TestReport<'a> {
     #[serde(flatten)]
     figures: &'a TestFigures,
     untrained: &'a TestFigures,
-    verdict: &'a Verdict,
+    verdict: &'a SuccessVerdict,
 }
 
 pub(crate) fn run(arguments: &TestArguments, console: &mut Console) -> Result<u8, ConsoleError> {
