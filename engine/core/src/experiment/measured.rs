@@ -49,6 +49,7 @@ pub(super) fn figures(
         spinning: share(spells.spinning),
         standing: share(spells.standing),
         circling: share(spells.circling),
+        returning: share(spells.returning),
         backwards: net_route_m.map(|_| share(spells.backwards)),
         prey_distance_m: prey_m.iter().map(|distance| f64::from(*distance)).collect::<Sorted>().upper_median(),
         does_task: net_route_m.map(|net_m| net_m.abs() / seconds >= TASK_SPEED_M_PER_S),

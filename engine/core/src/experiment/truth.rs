@@ -54,6 +54,8 @@ pub(super) struct Spells {
     pub(super) standing: u64,
     /// Full turn or more on a wider radius, ending within a quarter of the path of where it began.
     pub(super) circling: u64,
+    /// None of these, but ending within a quarter of the path of where it began: to and fro.
+    pub(super) returning: u64,
     /// Net progress along the route below zero.
     pub(super) backwards: u64,
 }
@@ -136,6 +138,8 @@ impl Truth {
             self.spells.circling += 1;
         } else if path_m < STANDING_M {
             self.spells.standing += 1;
+        } else if away_m < 0.25 * path_m {
+            self.spells.returning += 1;
         }
         self.spells.backwards += u64::from(net_m.is_some_and(|net_m| net_m < net_from_m));
         self.spell = Spell::new(self.last, net_m.unwrap_or(0.0));

@@ -20,6 +20,8 @@ const MOST_GOALS: f64 = 0.8;
 const BEATS_CHANCE: f64 = 5.0;
 /// Net along the route, m/s: half of the paper's cruising speed.
 const ALONG_M_PER_S: f64 = 0.1;
+/// At most this share of steps off the route: a circle that touches it on two sides is no way along it.
+const MOST_OFF: f64 = 0.25;
 /// At most this share of spells without getting anywhere.
 const MOST_IDLE: f64 = 0.5;
 
@@ -51,8 +53,11 @@ pub(crate) fn default_conditions(endable: Endable, has_route: bool, seconds: f64
         ask("beats chance", "test.metres_per_failure >= 5 * untrained.metres_per_failure", beats);
         if has_route {
             let along = Term::OfOne(f64::abs, Box::new(figure(Test, "net_route_m")));
-            let along = compare(GreaterOrEqual, along, Term::Constant(ALONG_M_PER_S * seconds));
-            ask("gets along", &format!("abs(test.net_route_m) >= {:.0}", ALONG_M_PER_S * seconds), along);
+            let along_m = ALONG_M_PER_S * seconds;
+            let along = compare(GreaterOrEqual, along, Term::Constant(along_m));
+            let on = than(LessOrEqual, Test, "off_route", MOST_OFF);
+            let text = format!("abs(test.net_route_m) >= {along_m:.0} && test.off_route <= {MOST_OFF}");
+            ask("gets along", &text, Term::And(vec![along, on]));
         } else {
             ask("gets along", "test.idle <= 0.5", than(LessOrEqual, Test, "idle", MOST_IDLE));
         }

@@ -45,6 +45,8 @@ pub struct TestFigures {
     pub standing: f64,
     /// Share of spells that went round in a circle.
     pub circling: f64,
+    /// Share of the other spells that end within a quarter of their path of where they began, as going to and fro does.
+    pub returning: f64,
     /// Share of spells with backward progress along the route; null without one.
     pub backwards: Option<f64>,
     /// Median distance between the robot and the prey, metres, centre to centre; null without one.
@@ -80,10 +82,10 @@ impl TestFigures {
         count as f64 * 1000.0 / self.steps.max(1) as f64
     }
 
-    /// Share of spells without getting anywhere: spinning, standing or circling.
+    /// Share of spells without getting anywhere: spinning, standing, circling or returning.
     #[must_use]
     pub fn idle(&self) -> f64 {
-        self.spinning + self.standing + self.circling
+        self.spinning + self.standing + self.circling + self.returning
     }
 }
 
@@ -214,6 +216,12 @@ pub const FIGURES: &[TestFigure] = &[
     test("spinning", "share", |test| test.spinning, "Spells of 20 s with a full turn on a radius below 0.3 m."),
     test("standing", "share", |test| test.standing, "Spells of 20 s with less than 0.2 m of path."),
     test("circling", "share", |test| test.circling, "Spells of 20 s that went round in a wider circle."),
-    test("idle", "share", TestFigures::idle, "Spells spinning, standing or circling."),
+    test(
+        "returning",
+        "share",
+        |test| test.returning,
+        "Other spells of 20 s that end near where they began: to and fro.",
+    ),
+    test("idle", "share", TestFigures::idle, "Spells spinning, standing, circling or returning."),
     route("backwards", "share", |test| test.backwards, "Spells of 20 s with backward progress along the route."),
 ];

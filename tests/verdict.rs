@@ -1,0 +1,187 @@
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use engine::diagnostic::{Result, SourceText};
+use engine::experiment::{Choice, Chooser, Decider, Overrides, Plan, in_parallel, test_choices, test_untrained};
+use engine::geometry::Twist;
+use engine::learner::Policy;
+use engine::script::Behaviour;
+use engine::verdict::{Because, SuccessVerdict};
+
+use crate::support::root;
+
+/// Every shipped behaviour that learns.
+const SHIPPED: &[&str] = &[
+    "avoid",
+    "corridor",
+    "corridor-erroneous",
+    "corridor-speed",
+    "dock",
+    "line",
+    "object",
+    "platform",
+    "wall",
+    "wall-instant",
+    "wall-left",
+];
+const STEPS: u64 = 2000;
+
+/// A policy that sees nothing: what it does depends on the step alone. Each with the motions that it needs.
+struct Cheat {
+    name: &'static str,
+    motions: &'static [(f64, f64)],
+    choice: fn(u64) -> usize,
+}
+
+const CHEATS: &[Cheat] = &[
+    Cheat { name: "stands", motions: &[(0.0, 0.0)], choice: |_| 0 },
+    Cheat { name: "creeps", motions: &[(0.02, 0.0)], choice: |_| 0 },
+    Cheat { name: "spins left", motions: &[(0.0, 0.8)], choice: |_| 0 },
+    Cheat { name: "spins right", motions: &[(0.0, -0.8)], choice: |_| 0 },
+    Cheat { name: "spins while it drives", motions: &[(0.05, 0.8)], choice: |_| 0 },
+    Cheat { name: "drives straight on", motions: &[(0.4, 0.0)], choice: |_| 0 },
+    Cheat { name: "drives straight on slowly", motions: &[(0.2, 0.0)], choice: |_| 0 },
+    Cheat { name: "drives backwards", motions: &[(-0.2, 0.0)], choice: |_| 0 },
+    Cheat { name: "backs in a circle", motions: &[(-0.2, 0.2)], choice: |_| 0 },
+    Cheat { name: "a circle of 0.3 m", motions: &[(0.2, 0.6)], choice: |_| 0 },
+    Cheat { name: "a circle of 1 m", motions: &[(0.2, -0.2)], choice: |_| 0 },
+    Cheat { name: "a circle of 2 m", motions: &[(0.4, 0.2)], choice: |_| 0 },
+    Cheat { name: "a circle of 2 m, the other way", motions: &[(0.4, -0.2)], choice: |_| 0 },
+    Cheat { name: "a circle of 3 m", motions: &[(0.3, 0.1)], choice: |_| 0 },
+    Cheat { name: "a circle of 3 m, the other way", motions: &[(0.3, -0.1)], choice: |_| 0 },
+    Cheat { name: "a circle of 5 m", motions: &[(0.4, 0.08)], choice: |_| 0 },
+    Cheat { name: "to and fro", motions: &[(0.2, 0.0), (-0.2, 0.0)], choice: |step| usize::from(step / 20 % 2 == 1) },
+    Cheat { name: "U-turns", motions: &[(0.3, 0.0), (0.05, 0.8)], choice: |step| usize::from(step % 20 >= 12) },
+    Cheat { name: "an eight", motions: &[(0.3, 0.3), (0.3, -0.3)], choice: |step| usize::from(step / 50 % 2 == 1) },
+    Cheat { name: "weaves", motions: &[(0.3, 0.6), (0.3, -0.6)], choice: |step| usize::from(step / 3 % 2 == 1) },
+];
+
+struct Blind(fn(u64) -> usize, u64);
+
+impl Chooser for Blind {
+    fn choose(&mut self, _: &[usize]) -> Result<Choice> {
+        self.1 += 1;
+        Ok(Choice { action: (self.0)(self.1 - 1), explored: false })
+    }
+}
+
+fn plan(path: &Path) -> Plan {
+    let overrides = Overrides { test_steps: Some(STEPS), ..Overrides::default() };
+    Plan::new(Arc::new(Behaviour::load(path).unwrap()), &overrides).unwrap()
+}
+
+fn shipped(name: &str) -> Plan {
+    plan(&root().join("scripts").join(format!("{name}.rhai")))
+}
+
+/// A script of one's own in a shipped world.
+fn written(text: &str) -> Plan {
+    let place = root().join("scripts/own.rhai");
+    let behaviour = Behaviour::parse("own", SourceText::new(place, text.to_owned())).unwrap();
+    Plan::new(Arc::new(behaviour), &Overrides { test_steps: Some(STEPS), ..Overrides::default() }).unwrap()
+}
+
+/// The verdict on whoever does not look.
+fn of_cheat(plan: &Plan, cheat: &Cheat) -> SuccessVerdict {
+    let never = AtomicBool::new(false);
+    let untrained = test_untrained(plan, 7, &never).unwrap();
+    let mut plan = plan.clone();
+    plan.settings.actions = cheat.motions.iter().map(|(linear, angular)| Twist::new(*linear, *angular)).collect();
+    let tested = test_choices(&plan, 7, &never, &mut Blind(cheat.choice, 0), &mut ()).unwrap();
+    plan.success().verdict(&tested.figures, &untrained)
+}
+
+/// The verdict on a policy that was never trained.
+fn of_untrained(plan: &Plan, seed: u64) -> SuccessVerdict {
+    let never = AtomicBool::new(false);
+    let decider = Decider::Learned(Policy::new(plan.settings.actions.len(), Vec::new()));
+    let tested = decider.test(plan, seed, &never, &mut ()).unwrap();
+    plan.success().verdict(&tested.figures, &test_untrained(plan, seed, &never).unwrap())
+}
+
+#[test]
+fn no_untrained_policy_of_ten_is_called_done_in_any_shipped_behaviour() {
+    for name in SHIPPED {
+        let plan = shipped(name);
+        let seeds: Vec<u64> = (0..10).collect();
+        let verdicts = in_parallel(&seeds, 0, |seed| Ok(of_untrained(&plan, seed))).unwrap();
+        let done = verdicts.iter().filter(|verdict| verdict.is_success()).count();
+        assert_eq!(done, 0, "{name}");
+    }
+}
+
+#[test]
+fn none_of_twenty_policies_that_see_nothing_is_called_done_in_any_shipped_behaviour() {
+    assert_eq!(CHEATS.len(), 20);
+    for name in SHIPPED {
+        let plan = shipped(name);
+        let numbers: Vec<u64> = (0..CHEATS.len() as u64).collect();
+        let verdicts = in_parallel(&numbers, 0, |number| Ok(of_cheat(&plan, &CHEATS[number as usize]))).unwrap();
+        let done: Vec<_> = CHEATS.iter().zip(&verdicts).filter(|(_, verdict)| verdict.is_success()).collect();
+        let names: Vec<_> = done.iter().map(|(cheat, _)| cheat.name).collect();
+        assert!(names.is_empty(), "{name}: {names:?}");
+    }
+}
+
+#[test]
+fn a_circle_inside_the_track_makes_no_laps() {
+    let plan = written(
+        "world(\"line\"); filter(\"colour\", #{ hue_deg: 50, width_deg: 20 });
+         rule \"contact\" when robot.contact => -1 then recover;",
+    );
+    let circle = CHEATS.iter().find(|cheat| cheat.name == "a circle of 3 m").unwrap();
+    let verdict = of_cheat(&plan, circle);
+    assert_eq!(verdict.success, Some(false), "{verdict:?}");
+}
+
+#[test]
+fn a_script_that_names_no_outcome_claims_nothing() {
+    let plan = written("world(\"room\"); fn reward(facts) { 0.001 }");
+    let verdict = of_untrained(&plan, 1);
+    assert_eq!((verdict.success, verdict.why), (None, Because::NothingToTellBy));
+    assert!(!plan.success().tells_learning());
+}
+
+#[test]
+fn a_success_that_chance_meets_too_claims_nothing() {
+    let plan = written(
+        "world(\"room\"); rule \"hit\" when robot.contact => -1 then fail;
+         success \"moves\" when test.distance_m > 1.0;",
+    );
+    let verdict = of_untrained(&plan, 1);
+    assert_eq!((verdict.success, verdict.why), (None, Because::UntrainedToo));
+}
+
+#[test]
+fn a_success_by_the_reward_alone_claims_nothing() {
+    let plan = written(
+        "world(\"room\"); rule \"hit\" when robot.contact => -1 then fail;
+         success \"pays\" when test.reward_per_1000 > -1000.0;",
+    );
+    assert_eq!(of_untrained(&plan, 1).why, Because::RewardOnly);
+}
+
+#[test]
+fn a_time_limit_is_neither_failure_nor_goal() {
+    for words in ["then recover", "then restart"] {
+        let plan = written(&format!("world(\"room\"); rule \"timeout\" when time.since_recovery >= 100 => 0 {words};"));
+        let figures = test_untrained(&plan, 1, &AtomicBool::new(false)).unwrap();
+        assert_eq!((figures.failures, figures.goals, figures.restarts), (0, 0, STEPS / 100), "{words}");
+    }
+}
+
+#[test]
+fn a_goal_is_a_goal_whatever_it_pays_and_a_failure_a_failure() {
+    let plan = written(
+        "world(\"room\");
+         rule \"far\"  when time.since_recovery >= 50 => -3 then goal;
+         rule \"near\" when robot.contact => 2 then fail;",
+    );
+    let figures = test_untrained(&plan, 1, &AtomicBool::new(false)).unwrap();
+    let fired = |rule: usize| figures.rules[rule].fired;
+    assert_eq!((figures.goals, figures.failures), (fired(0), fired(1)));
+    assert!(figures.goals > 0 && figures.failures > 0 && figures.restarts == 0, "{figures:?}");
+    assert_eq!(figures.goal_rate, fired(0) as f64 / (fired(0) + fired(1)) as f64);
+    assert_eq!(figures.goal_s, Some(50.0 * plan.settings.run.period_s));
+}
