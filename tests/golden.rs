@@ -51,7 +51,7 @@ fn run(bench: &Bench, script: &str, change: Option<&str>) -> BTreeMap<String, Ha
         None => {}
     }
     if change.is_some() {
-        arguments.extend(["--steps", "1200", "--out", "variant"]);
+        arguments.extend(["--steps", "1200", "--out", "variant", "--force"]);
     }
     let output = bench.engine(&arguments);
     assert!(output.status.code().unwrap() <= 1, "{script}: {}", String::from_utf8_lossy(&output.stderr));

@@ -82,7 +82,48 @@ fn a_run_whose_files_were_changed_is_refused() {
     refused("E-LOG-RUN", "is not the log that");
     bench.write("a/summary.json", summary.replace("\"state_hash\": \"", "\"state_hash\": \"0"));
     let told = bench.failure(&["replay", "a", "--verify"]);
-    assert!(told.contains("E-LOG-DIFFERS") && told.contains("state_hash in summary.json"), "{told}");
+    assert!(
+        told.contains("E-LOG-DIFFERS") && told.contains("summary.json does not say what the run gives: state_hash"),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_forged_figure_curve_or_table_is_no_run_that_was_reproduced() {
+    let bench = recorded(&[]);
+    let forged = |file: &str, from: &str, to: &str, words: &str| {
+        let text = bench.read(&format!("a/{file}"));
+        let changed = text.replacen(from, to, 1);
+        assert_ne!(text, changed, "{from}");
+        bench.write(&format!("a/{file}"), changed);
+        let told = bench.failure(&["replay", "a", "--verify"]);
+        assert!(told.starts_with("exit status 7") && told.contains("E-LOG-DIFFERS") && told.contains(words), "{told}");
+        bench.write(&format!("a/{file}"), text);
+    };
+    let summary = bench.read("a/summary.json");
+    for (place, words) in [
+        ("/learned_at", "learned_at"),
+        ("/test/laps", "test.laps"),
+        ("/test/failures", "test.failures"),
+        ("/states_seen", "states_seen"),
+        ("/rules/0/total", "rules[0].total"),
+        ("/untrained/distance_m", "untrained.distance_m"),
+        ("/reinforcement_per_400/0", "reinforcement_per_400[0]"),
+    ] {
+        let mut figures: Value = serde_json::from_str(&summary).unwrap();
+        *figures.pointer_mut(place).unwrap() = Value::from(1234);
+        bench.write("a/summary.json", figures.to_string());
+        let told = bench.failure(&["replay", "a", "--verify"]);
+        assert!(told.starts_with("exit status 7") && told.contains(&format!("{words} is 1234")), "{told}");
+    }
+    bench.write("a/summary.json", &summary);
+    let curve = bench.read("a/curve.csv");
+    let last = curve.lines().last().unwrap();
+    forged("curve.csv", last, &format!("{last}1"), "curve.csv");
+    let policy = bench.read("a/policy.toml");
+    let visits = policy.lines().find(|line| line.starts_with("visits")).unwrap();
+    forged("policy.toml", visits, &format!("{visits}0"), "policy.toml");
+    assert!(bench.ok(&["replay", "a", "--verify"]).contains("and every figure"));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use engine::experiment::{ConditionSpread, Plan, Summary};
 use engine::verdict::{Because, ConditionVerdict, FigureVerdict, SuccessVerdict};
 
-use crate::words::short;
+use crate::words::brief;
 
 /// What to write where nothing can be told.
 const WRITE: &str = "success \"name\" when test.failures_per_1000 <= 2;";
@@ -34,7 +34,7 @@ pub fn headline(verdict: &SuccessVerdict) -> String {
 #[must_use]
 pub fn figures(condition: &ConditionVerdict) -> String {
     let figure = |FigureVerdict { name, value, untrained }: &FigureVerdict| {
-        let number = |value: &Option<f64>| value.map_or("unknown".to_owned(), short);
+        let number = |value: &Option<f64>| value.map_or("unknown".to_owned(), brief);
         format!("{name} {}, untrained {}", number(value), number(untrained))
     };
     condition.figures.iter().map(figure).collect::<Vec<_>>().join("; ")
@@ -43,7 +43,7 @@ pub fn figures(condition: &ConditionVerdict) -> String {
 /// The figures of a condition over many seeds.
 #[must_use]
 pub fn spread_of_figures(condition: &ConditionSpread) -> String {
-    let number = |value: Option<f64>| value.map_or("unknown".to_owned(), short);
+    let number = |value: Option<f64>| value.map_or("unknown".to_owned(), brief);
     let figure = |figure: &engine::experiment::FigureSpread| {
         let engine::experiment::FigureSpread { name, median, least, greatest, untrained } = figure;
         let [median, least, greatest, untrained] = [median, least, greatest, untrained].map(|value| number(*value));

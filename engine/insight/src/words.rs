@@ -3,6 +3,7 @@
 //! | function | -1234.5678 | where |
 //! |---|---|---|
 //! | [`short`] | `-1234.568` | the program's lines, findings: can be copied into a script |
+//! | [`brief`] | `-1235` | figures of a verdict in the program's lines |
 //! | [`typeset`] | `−1235` | the terminal of the live page, which writes as the page does |
 //! | [`spaced`], one place | `−1234.6` | pictures; from five digits on with thin spaces between thousands |
 //! | [`three_figures`] | `−1235` | values of states in pictures |
@@ -16,10 +17,16 @@ pub fn short(value: f64) -> String {
     trimmed(value, 3)
 }
 
-/// At most two places, none from 100 on, with a true minus.
+/// At most two places, none from 100 on, with a plain minus.
+#[must_use]
+pub fn brief(value: f64) -> String {
+    trimmed(value, if value.abs() >= 100.0 { 0 } else { 2 })
+}
+
+/// As [`brief`], with a true minus.
 #[must_use]
 pub fn typeset(value: f64) -> String {
-    trimmed(value, if value.abs() >= 100.0 { 0 } else { 2 }).replace('-', "−")
+    brief(value).replace('-', "−")
 }
 
 /// A whole number with commas between thousands.

@@ -106,6 +106,9 @@ pub(crate) struct RunArguments {
     /// The folder for the results [default: runs/BEHAVIOUR/SEED]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Replace another run in the folder: without it, such a run stays, and this one goes to the next number or is refused
+    #[arg(long)]
+    pub(crate) force: bool,
     /// Record learning and test for Foxglove or Rerun, as an MCAP file; of one seed
     #[arg(long, value_name = "FILE.mcap")]
     pub(crate) record: Option<PathBuf>,

@@ -32,6 +32,9 @@ pub(super) fn write_run(folder: &Path, plan: &Plan, seed: u64) -> Result<()> {
     write_atomic(&folder.join(RUN_FILE), run_to_toml(plan, seed)?.as_bytes())
 }
 
+/// The file of the learning curve in a run's folder.
+pub const CURVE_FILE: &str = "curve.csv";
+
 /// Writes `log.bin`.
 pub(super) fn write_log(folder: &Path, plan: &Plan, seed: u64, log: &RunLog) -> Result<()> {
     let run = run_to_toml(plan, seed)?;
@@ -54,6 +57,13 @@ pub(super) fn write_seed(folder: &Path, plan: &Plan, result: &SeedResult) -> Res
         write_atomic(&folder.join("disagreements.csv"), table.as_bytes())?;
     }
     let Some(learned) = &result.run.learned else { return Ok(()) };
+    write_atomic(&folder.join(CURVE_FILE), curve_of(plan, learned).as_bytes())?;
+    write_policy(folder, plan, learned)
+}
+
+/// What `curve.csv` holds.
+#[must_use]
+pub fn curve_of(plan: &Plan, learned: &Learned) -> String {
     let (mut step, tally) = (0, &learned.tally);
     let rows: Vec<CurveRow> = (tally.windows.iter().enumerate())
         .map(|(index, window)| {
@@ -61,6 +71,5 @@ pub(super) fn write_seed(folder: &Path, plan: &Plan, result: &SeedResult) -> Res
             CurveRow { step, reinforcement: window.reinforcement, by_rule: tally.by_rule(index).to_vec() }
         })
         .collect();
-    write_atomic(&folder.join("curve.csv"), curve_csv(WINDOW_STEPS, &plan.rule_names(), &rows).as_bytes())?;
-    write_policy(folder, plan, learned)
+    curve_csv(WINDOW_STEPS, &plan.rule_names(), &rows)
 }

@@ -3,17 +3,20 @@
 mod files;
 mod pages;
 mod pictures;
+mod taken;
 mod test_folder;
 
 use std::path::{Path, PathBuf};
 
 use crate::lint::Report;
-use crate::store::{POLICY_FILE, SUMMARY_FILE};
+use crate::report::write_atomic;
+use crate::store::{POLICY_FILE, RUN_FILE, SUMMARY_FILE, run_to_toml};
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Learned, Plan, RunLog, SeedRun, Spread};
 use files::{write_log, write_policy, write_run, write_seed};
+use taken::{holds_another, numbered, taken};
 
-pub use files::{create_folder, write_json};
+pub use files::{CURVE_FILE, create_folder, curve_of, write_json};
 pub use test_folder::TestFolder;
 
 /// One seed's results.
@@ -33,15 +36,33 @@ pub struct RunFolder {
     many: bool,
 }
 
+/// What to do if a folder holds another run: another script, other settings, another seed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum IfTaken {
+    /// That run is replaced.
+    Replace,
+    /// It stays, and nothing is run.
+    Refuse,
+    /// It stays, and the new run goes to the next number: `1.2` beside `1`.
+    Number,
+}
+
 impl RunFolder {
     /// Creates the folder and writes `run.toml`, so that a folder that cannot be written is known before learning.
     ///
     /// # Errors
-    /// If it cannot be made.
-    pub fn create(path: &Path, plan: &Plan, seeds: &[u64]) -> Result<Self> {
-        create_folder(path)?;
-        write_run(path, plan, seeds.first().copied().unwrap_or_default())?;
-        Ok(Self { path: path.to_owned(), many: seeds.len() > 1 })
+    /// If it cannot be made; `E-RUN-TAKEN` if it holds another run that must stay.
+    pub fn create(path: &Path, plan: &Plan, seeds: &[u64], if_taken: IfTaken) -> Result<Self> {
+        let run = run_to_toml(plan, seeds.first().copied().unwrap_or_default())?;
+        let path = match if_taken {
+            IfTaken::Replace => path.to_owned(),
+            IfTaken::Refuse if holds_another(path, &run) => return taken(path).fail(),
+            IfTaken::Refuse => path.to_owned(),
+            IfTaken::Number => numbered(path, &run),
+        };
+        create_folder(&path)?;
+        write_atomic(&path.join(RUN_FILE), run.as_bytes())?;
+        Ok(Self { path, many: seeds.len() > 1 })
     }
 
     /// Where it is.

@@ -17,5 +17,6 @@ pub(crate) mod run;
 pub(crate) mod sources;
 mod stop;
 pub(crate) mod test;
+mod verify;
 pub(crate) mod watch;
 mod words;

@@ -1,16 +1,14 @@
 //! `engine replay`: a recorded run again, step by step; with `--verify`, from its seed alone.
 
-use std::sync::atomic::Ordering;
-
 use engine::diagnostic::{Diagnostic, Result, printable};
-use engine::experiment::{Decider, Ledger, Overrides, Phase, Plan, Playback, Record, RuleScore, RunLog, run_seed};
+use engine::experiment::{Ledger, Phase, Plan, Playback, Record, RuleScore};
 use engine::learner::Carry;
 use insight::store::{RecordedRun, StoredRun};
 use insight::words::short;
 use serde::Serialize;
 
 use super::sources::catalogue;
-use super::stop::{INTERRUPTED, on_ctrl_c};
+use super::verify::{differs, verify};
 use super::words::{direction, motion};
 use crate::cli::ReplayArguments;
 use crate::console::{Console, ConsoleError};
@@ -69,21 +67,10 @@ struct StepEntry {
     pose: [f64; 3],
 }
 
-#[derive(Serialize)]
-struct Verified {
-    behaviour: String,
-    seed: u64,
-    reproduced: bool,
-    learning_steps: u64,
-    test_steps: u64,
-    log_sha256: String,
-    state_hash: String,
-}
-
 pub(crate) fn run(arguments: &ReplayArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
     let recorded = RecordedRun::load(&arguments.run, catalogue(&arguments.filters)?)?;
     if arguments.verify {
-        return verify(&recorded, console);
+        return verify(&arguments.run, &recorded, console);
     }
     let RecordedRun { stored: StoredRun { plan, seed, .. }, log, .. } = &recorded;
     let (phase, ledger, name) = match arguments.test {
@@ -127,11 +114,6 @@ fn play(plan: &Plan, seed: u64, phase: Phase, ledger: &Ledger, name: &str) -> Re
         }
     }
     Ok(())
-}
-
-fn differs(what: &str) -> Diagnostic {
-    Diagnostic::new("E-LOG-DIFFERS", format!("the run does not come out as it was recorded: {what}"))
-        .help("this engine, or a filter, is not the one that recorded the run: compare 'engine' in run.toml")
 }
 
 fn swaps(plan: &Plan, phase: Phase) -> Vec<SwapEntry> {
@@ -233,69 +215,4 @@ fn because(step: &StepEntry) -> String {
     let beam = beam.map_or(String::new(), |(beam, angle)| format!(", beam {beam}, {}", direction(angle)));
     let recover = if step.recover { ", then recover" } else { "" };
     format!("{}{beam}{recover}", rules.join(" and "))
-}
-
-/// Learns and tests again from the seed alone.
-fn verify(recorded: &RecordedRun, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
-    let RecordedRun { stored, log, summary } = recorded;
-    let (plan, seed) = (&stored.plan, stored.seed);
-    let stop = on_ctrl_c()?;
-    // A run that was stopped is done again as far as it came; one that a failure ended, until it fails again.
-    let steps = match summary {
-        Some(_) => Overrides {
-            steps: Some(log.learning.last_leg().0),
-            test_steps: Some(log.test.steps()),
-            ..Overrides::default()
-        },
-        None => Overrides::default(),
-    };
-    let plan = plan.clone().with_changes(&steps)?;
-    let mut again = RunLog::new(&plan);
-    let (learned, state_hash) = match run_seed(&plan, seed, &stop, &|_| (), &mut again) {
-        Ok(run) => (run.learned, run.summary.state_hash),
-        // A run that a failure ended fails again, at the same step.
-        Err(broken) if summary.is_none() => {
-            let state_hash = broken.learned.as_ref().map_or_else(String::new, |learned| learned.state_hash.clone());
-            (broken.learned, state_hash)
-        }
-        Err(broken) => return Err(broken.error.into()),
-    };
-    if stop.load(Ordering::Relaxed) {
-        return Ok(INTERRUPTED);
-    }
-    compare(log, &again)?;
-    if let (Decider::Learned(policy), Some(learned)) = (&stored.decider, &learned)
-        && learned.policy != *policy
-    {
-        return Err(Box::new(differs("the table in policy.toml")).into());
-    }
-    if summary.as_ref().is_some_and(|summary| state_hash != summary.state_hash) {
-        return Err(Box::new(differs("state_hash in summary.json")).into());
-    }
-    let verified = Verified {
-        behaviour: plan.behaviour.name().to_owned(),
-        seed,
-        reproduced: true,
-        learning_steps: log.learning.steps(),
-        test_steps: log.test.steps(),
-        log_sha256: again.sha256(),
-        state_hash,
-    };
-    console.json(&verified)?;
-    console.line(&format!(
-        "reproduced bit for bit: {} steps of learning and {} of the test",
-        verified.learning_steps, verified.test_steps
-    ))?;
-    console.line(&format!("log:       sha256 {}", verified.log_sha256))?;
-    console.line(&format!("state:     sha256 {}", verified.state_hash))?;
-    Ok(0)
-}
-
-fn compare(log: &RunLog, again: &RunLog) -> Result<()> {
-    for (name, old, new) in [("learning", &log.learning, &again.learning), ("the test", &log.test, &again.test)] {
-        if let Some((step, field)) = old.first_difference(new) {
-            return differs(&format!("step {step} of {name}: {field}")).fail();
-        }
-    }
-    Ok(())
 }

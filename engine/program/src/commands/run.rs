@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Overrides, Phase, Plan, Progress, RunLog, Spread, WINDOW_STEPS, in_parallel, run_seed};
-use insight::folder::{RunFolder, SeedResult};
+use insight::folder::{IfTaken, RunFolder, SeedResult};
 use insight::record::{check_recording, record};
 use pack::Runnable;
 
@@ -26,7 +26,16 @@ pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::resul
     if let Some(path) = &arguments.record {
         check_record(path, &seeds)?;
     }
-    let folder = RunFolder::create(&out(arguments, plan.behaviour.name(), &seeds), &plan, &seeds)?;
+    let if_taken = match (arguments.force, &arguments.out) {
+        (true, _) => IfTaken::Replace,
+        (false, Some(_)) => IfTaken::Refuse,
+        (false, None) => IfTaken::Number,
+    };
+    let wanted = out(arguments, plan.behaviour.name(), &seeds);
+    let folder = RunFolder::create(&wanted, &plan, &seeds, if_taken)?;
+    if folder.path() != wanted {
+        console.note(&format!("'{}' holds another run, which stays: see 'results' below", wanted.display()));
+    }
 
     let stop = on_ctrl_c()?;
     let threads = arguments.threads.unwrap_or(0) as usize;

@@ -85,11 +85,11 @@ fn keep(word: Option<&str>) -> Option<engine::learner::Carry> {
 #[cfg(feature = "serve")]
 fn finished(out: std::path::PathBuf) -> watch::Finished {
     use engine::experiment::{RunLog, SeedRun};
-    use insight::folder::{RunFolder, SeedResult};
+    use insight::folder::{IfTaken, RunFolder, SeedResult};
     Box::new(move |run, tests, seconds| {
         let (plan, many) = (&run.plan, run.seeds.len() > 1);
         let seeds: Vec<u64> = run.seeds.iter().map(|seed| seed.seed).collect();
-        let folder = RunFolder::create(&out, plan, &seeds)?;
+        let folder = RunFolder::create(&out, plan, &seeds, IfTaken::Replace)?;
         let mut results = Vec::new();
         for (seed, tested) in run.seeds.iter().zip(tests) {
             // A finished run has it.

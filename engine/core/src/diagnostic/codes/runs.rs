@@ -122,6 +122,13 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          in it is refused, since the run would no longer be what it says.",
     ),
     (
+        "E-RUN-TAKEN",
+        Kind::Disk,
+        "The folder that --out names holds another run, which would be lost.\n\
+         A run of the same script, settings and seed leaves the same files, and may be written again. Name another folder, \
+         or say --force to replace what is there. Without --out, another run goes to the next number: runs/wall/1.2.",
+    ),
+    (
         "E-SIGNAL",
         Kind::Fault,
         "The system does not let the engine listen for Ctrl-C. Nothing is learned, so that a stop cannot lose \
