@@ -98,17 +98,18 @@ fn a_run_that_is_checked_too_shows_what_its_reward_can_be_had_for() {
 }
 
 #[test]
-fn many_seeds_share_a_page_that_begins_with_the_worst() {
+fn many_seeds_share_a_page_that_begins_with_the_median() {
     let bench = Bench::new();
     bench.engine(&["run", "short.rhai", "--seeds", "3"]);
     let html = bench.read("runs/short/1-3/report.html");
     let page = document(&html);
     let seeds = page["seeds"].as_array().unwrap();
     let failures = |seed: &serde_json::Value| seed["test"]["failures_per_1000"].as_f64().unwrap();
-    let worst = seeds.iter().map(failures).fold(0.0, f64::max);
+    let mut all: Vec<f64> = seeds.iter().map(failures).collect();
+    all.sort_by(f64::total_cmp);
     let first: Vec<_> = seeds.iter().filter(|seed| seed["shown_first"] == true).collect();
     assert_eq!((seeds.len(), first.len()), (3, 1));
-    assert_eq!(failures(first[0]), worst);
+    assert_eq!(failures(first[0]), all[1]);
     assert!(html.len() < 3 << 20);
 }
 

@@ -34,6 +34,12 @@ fn the_page_of_a_run_plays_scrubs_and_explains() {
     let path = bench.path().join("runs/short/1/report.html");
     let Some(mut page) = open(&format!("file://{}", path.display())) else { return };
     let step = "Number(document.querySelector('#moment b').textContent.replace(',', ''))";
+    // It opens on the test, playing, with the verdict above.
+    page.wait_for(&format!("{step} > 0 && document.getElementById('play').textContent === 'Pause'"));
+    assert_eq!(page.value("document.querySelector('[data-phase=test]').ariaPressed"), "true");
+    assert_eq!(page.value("document.querySelectorAll('#verdict li').length > 0"), true);
+    page.key(" ", 0);
+    page.click_on("document.querySelector('[data-phase=learning]')");
     page.wait_for(&format!("{step} === 0"));
     page.key("ArrowRight", 0);
     page.wait_for(&format!("{step} === 1"));
@@ -75,6 +81,8 @@ fn all_that_drives_by_itself_is_drawn() {
     bench.engine(&["run", "short.rhai"]);
     let path = bench.path().join("runs/short/1/report.html");
     let Some(mut page) = open(&format!("file://{}", path.display())) else { return };
+    page.key(" ", 0);
+    page.click_on("document.querySelector('[data-phase=learning]')");
     // Where the pixels of a colour are on the canvas of what moves: their mean column.
     let column = |page: &mut Chromium, colour: &str| {
         page.value(&format!(
@@ -156,6 +164,7 @@ fn a_save_redraws_the_live_page_and_a_bad_one_shows_its_error() {
 fn a_reward_swapped_under_running_robots_goes_on_with_their_curve() {
     let served = crate::watch::served::Served::new(&["--port", "0", "--keep", "--out", "kept"]);
     let Some(mut page) = open(&served.address()) else { return };
+    page.click_on("document.querySelector('[data-phase=learning]')");
     page.wait_for("document.getElementById('moment').textContent.includes('of 800')");
     served.bench.write(
         "short.rhai",

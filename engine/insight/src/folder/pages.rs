@@ -15,12 +15,16 @@ const SHOTS: usize = 60;
 /// Seeds whose steps can stand in one page.
 const MOST_SEEDS: usize = 3;
 
-/// Writes the page of a run; of many seeds, the worst bring their steps.
+/// Writes the page of a run; of many seeds, the median one and the worst bring their steps.
 pub(super) fn write_page(folder: &Path, plan: &Plan, results: &[SeedResult], checked: Option<&Report>) -> Result<()> {
     let mut order: Vec<usize> = (0..results.len()).collect();
     let failures = |index: usize| results[index].run.summary.test.failures_per_1000;
     order.sort_by(|a, b| failures(*b).total_cmp(&failures(*a)));
-    order.truncate(MOST_SEEDS);
+    let median = order[order.len() / 2];
+    order.truncate(MOST_SEEDS - 1);
+    if !order.contains(&median) {
+        order.push(median);
+    }
     let mut read = Vec::new();
     for index in order {
         if results[index].log.is_none() {

@@ -39,7 +39,9 @@ pub(super) fn draw_seed(folder: &Path, plan: &Plan, result: &SeedResult) -> Resu
 }
 
 pub(super) fn draw_trails(folder: &Path, plan: &Plan, title: &str, panels: &[(&str, &Trail)]) -> Result<()> {
-    let route: Option<Vec<Point2>> = plan.layout.lap.map(|lap| plan.layout.routes[lap].points().to_vec());
+    // A lap ends where it begins.
+    let lap = plan.layout.lap.map(|lap| plan.layout.routes[lap].points());
+    let route: Option<Vec<Point2>> = lap.map(|points| points.iter().chain(points.first()).copied().collect());
     let parts = plan.layout.scene.parts();
     trajectories(&TrajectoryData { title, parts, route: route.as_deref(), panels })?.write(folder, "trajectories")
 }

@@ -12,6 +12,7 @@ use engine::diagnostic::Result;
 use engine::experiment::{Plan, WINDOW_STEPS};
 use engine::learner::Carry;
 use engine::settings::{SETTINGS, Settings, Value};
+use engine::stats::Sorted;
 
 /// The version of the contract; a page shows only documents of its own version.
 const FORMAT: u32 = 2;
@@ -115,9 +116,8 @@ impl Document {
             document.seeds.push(SeedView::new(plan, data)?);
         }
         let mut bytes = 0;
-        // The seed that fails most is the one to look at; then the others in their order.
-        let badness = |index: &usize| (document.seeds[*index].badness(), std::cmp::Reverse(*index));
-        let first = if moments.seeds.is_some() { Some(0) } else { (0..seeds.len()).max_by_key(badness) };
+        // The median robot is the one to look at; then the others in their order.
+        let first = if moments.seeds.is_some() { Some(0) } else { median_seed(&document.seeds) };
         let order = first.into_iter().chain((0..seeds.len()).filter(|index| Some(*index) != first));
         for index in order.take(moments.seeds.unwrap_or(usize::MAX)) {
             if bytes > MOST_EMBEDDED_BYTES / 2 && bytes + bytes_of_next(bytes, &document) > MOST_EMBEDDED_BYTES {
@@ -203,6 +203,14 @@ impl Document {
             seed.shown_first = true;
         }
     }
+}
+
+/// The seed to look at first: among those that bring their steps, the one whose failures are nearest to the median of all.
+fn median_seed(seeds: &[SeedView]) -> Option<usize> {
+    let failures = |seed: &SeedView| seed.test.as_ref().map_or(0.0, |test| test.failures_per_1000);
+    let median = seeds.iter().map(failures).collect::<Sorted>().upper_median()?;
+    let away = |index: &usize| (failures(&seeds[*index]) - median).abs();
+    (0..seeds.len()).filter(|index| seeds[*index].brings_steps).min_by(|a, b| away(a).total_cmp(&away(b)))
 }
 
 /// A seed takes about as much room as those before it.

@@ -40,6 +40,9 @@ pub struct SeedView {
     pub seed: u64,
     /// Whether the page begins with it.
     pub shown_first: bool,
+    /// Whether its steps are at hand.
+    #[serde(skip)]
+    pub brings_steps: bool,
     /// The first step from which four windows in a row are good.
     pub learned_at: Option<u64>,
     /// Reinforcement of each window.
@@ -129,6 +132,7 @@ impl SeedView {
         Ok(Self {
             seed: data.seed,
             shown_first: false,
+            brings_steps: brings_steps || !data.tested.is_empty(),
             learned_at: data.tally.and_then(|tally| plan.success().learned_at(&tally.counts())),
             by_rule: data.tally.map_or_else(Vec::new, |tally| windows.map(|at| by_rule(plan, tally, at)).collect()),
             curve,
@@ -174,11 +178,6 @@ impl SeedView {
     /// Approximate size of the steps in the page, bytes.
     pub(super) fn bytes(&self) -> usize {
         [&self.learning, &self.tested].into_iter().flatten().map(Track::bytes).sum()
-    }
-
-    /// How much a seed deserves a look: its failures in a million steps.
-    pub(super) fn badness(&self) -> u64 {
-        self.test.as_ref().map_or(0, |test| (test.failures_per_1000 * 1000.0) as u64)
     }
 }
 

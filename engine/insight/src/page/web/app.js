@@ -3,7 +3,7 @@
 const SPEEDS = [1, 2, 5, 10, 25, 50, 100, 250, 1000];
 
 const app = {
-  doc: null, before: null, save: 0, seed: 0, phase: 'learning', step: 0, share: 1, speed: 3, playing: false,
+  doc: null, before: null, save: 0, seed: 0, phase: 'test', step: 0, share: 1, speed: 3, playing: false,
   litRule: null, live: null, shot: null, tracks: new Map(), picked: false,
 };
 const stale = { base: true, moment: true, motion: true, lit: true };
@@ -26,7 +26,7 @@ function track() {
 }
 
 function showDocument(doc, before) {
-  const [wasSeed, wasPhase, wasStep] = app.doc ? [seedView()?.seed, app.phase, app.step] : [null, 'learning', 0];
+  const [wasSeed, wasPhase, wasStep] = app.doc ? [seedView()?.seed, app.phase, app.step] : [null, 'test', 0];
   Object.assign(app, { doc, before, shot: null });
   app.tracks.clear();
   app.litRule = null;
@@ -84,7 +84,14 @@ function setPhase(phase) {
     button.setAttribute('aria-pressed', String(own === app.phase));
     button.disabled = own === 'learning' ? !seed.learning : !seed.tested;
   }
-  const { test } = seed;
+  const { test, verdict } = seed;
+  const success = { true: 'success', false: 'no success', null: 'success cannot be told' };
+  $('verdict').hidden = !verdict;
+  $('verdict').replaceChildren(...(verdict ? [
+    el('p', {}, el('b', { text: success[verdict.success] }), ...(verdict.success ? [] : [`: ${verdict.text.replace(/^(no|cannot be told): /, '')}`])),
+    el('ul', {}, ...verdict.conditions.map((one) => el('li', { class: one.holds ? 'holds' : 'fails', title: one.condition },
+      el('b', { text: `${one.holds ? '✓' : '✗'} ${one.name}` }), ` ${one.figures}`))),
+  ] : []));
   $('facts').replaceChildren(
     ...(seed.curve.length ? ['learned ', el('b', { text: seed.learned_at === null ? 'not yet' : `at step ${whole(seed.learned_at)}` })] : ['policies combined']),
     ...(test ? [' · test: ', el('b', { text: `${short(test.failures_per_1000)} failures` }), ' in 1,000 steps, ',
@@ -265,7 +272,10 @@ function start() {
   for (const box of ['map', 'curve', 'timeline']) sizes.observe($(box));
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', again);
   const document_ = JSON.parse($('data').textContent);
-  if (document_) showDocument(document_, null);
+  if (document_) {
+    showDocument(document_, null);
+    if (!matchMedia('(prefers-reduced-motion: reduce)').matches) toggle();
+  }
   else {
     $('status').textContent = 'connecting';
     $('again').hidden = false;
