@@ -26,6 +26,7 @@ mod success;
 mod syntax;
 mod top_level;
 mod tree;
+mod types;
 mod unknown;
 mod unread;
 

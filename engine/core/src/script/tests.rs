@@ -4,6 +4,7 @@ mod errors;
 mod mistakes;
 mod pages;
 mod same;
+mod types;
 
 use super::*;
 use crate::diagnostic::{Diagnostic, SourceText};

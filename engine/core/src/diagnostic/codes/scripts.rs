@@ -109,6 +109,13 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          ';'.",
     ),
     (
+        "E-SCRIPT-TYPE",
+        Kind::Input,
+        "A truth value stands where a number belongs, or a number where something true or false belongs.\n\
+         Facts such as robot.contact are true or false already: write robot.contact, not robot.contact == 1, which is never \
+         true. Two limits are two comparisons: 0.3 < laser.front && laser.front < 0.6.",
+    ),
+    (
         "E-SET",
         Kind::Usage,
         "A --set on the command line names no setting, or gives it a value that it cannot have.\n\

@@ -1,0 +1,184 @@
+//! Truth values and numbers told apart at load: the interpreter compares the two without a word, and the answer is always the
+//! same. What has no type that can be read from the text is let through.
+
+use super::access::{Access, fact_of};
+use super::positions::first;
+use super::source::Code;
+use super::syntax::is_success_expr;
+use crate::diagnostic::{Diagnostic, Mistakes};
+use crate::judge::explain::offset;
+use crate::judge::expression::{Arithmetic, Comparison};
+use crate::judge::fact_table::is_group;
+use crate::judge::functions::FUNCTIONS;
+use rhai::{AST, ASTNode, Expr, FnCallExpr, Position};
+
+/// What a value is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Flag,
+    Number,
+}
+
+/// Adds every operator between a truth value and a number, outermost first: what a mistake has in it is not told again.
+pub(super) fn check_types(code: &Code, ast: &AST, mistakes: &mut Mistakes) {
+    let mut facts = vec!["facts"];
+    let functions = ast.iter_functions().filter(|function| matches!(function.name, "reward" | "calibrate"));
+    facts.extend(functions.filter_map(|function| function.params.first().copied()));
+    let checker = TypeChecker { code, facts: &facts };
+    for (part, in_function) in [(ast.clone_statements_only(), false), (ast.clone_functions_only(), true)] {
+        part.walk(&mut |path: &[ASTNode<'_>]| {
+            let Some((ASTNode::Expr(expr), above)) = path.split_last() else { return true };
+            let is =
+                |node: &ASTNode<'_>, test: &dyn Fn(&Expr) -> bool| matches!(node, ASTNode::Expr(expr) if test(expr));
+            let judged = in_function || above.iter().any(|node| is(node, &|expr| matches!(expr, Expr::Custom(..))));
+            let told =
+                above.iter().any(|node| is(node, &|expr| is_success_expr(expr) || checker.wrong(expr).is_some()));
+            if judged
+                && !told
+                && let Some(wrong) = checker.wrong(expr)
+            {
+                mistakes.add(wrong);
+            }
+            true
+        });
+    }
+}
+
+struct TypeChecker<'a> {
+    code: &'a Code,
+    /// The names by which all facts are known.
+    facts: &'a [&'a str],
+}
+
+impl TypeChecker<'_> {
+    /// What is wrong with an expression itself, whatever is in it.
+    fn wrong(&self, expr: &Expr) -> Option<Diagnostic> {
+        match expr {
+            Expr::And(parts, _) | Expr::Or(parts, _) => {
+                let number = parts.iter().find(|part| self.kind(part) == Some(Kind::Number))?;
+                Some(self.no_flag(number))
+            }
+            Expr::FnCall(call, position) => match call.args.as_slice() {
+                [of] if call.name == "!" && self.kind(of) == Some(Kind::Number) => Some(self.no_flag(of)),
+                [of] if call.name == "-" && self.kind(of) == Some(Kind::Flag) => Some(self.no_number(of)),
+                [a, b] if let Some(comparison) = Comparison::of(&call.name) => {
+                    self.compared(comparison, call, *position, [a, b])
+                }
+                [a, b] if Arithmetic::of(&call.name).is_some() => {
+                    [a, b].into_iter().find(|side| self.kind(side) == Some(Kind::Flag)).map(|flag| self.no_number(flag))
+                }
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    fn compared(
+        &self,
+        comparison: Comparison,
+        call: &FnCallExpr,
+        position: Position,
+        [a, b]: [&Expr; 2],
+    ) -> Option<Diagnostic> {
+        let (flag, flag_first) = match (self.kind(a), self.kind(b)) {
+            (Some(Kind::Flag), Some(Kind::Number)) => (a, true),
+            (Some(Kind::Number), Some(Kind::Flag)) => (b, false),
+            (Some(Kind::Flag), Some(Kind::Flag)) if comparison.orders() => (a, true),
+            _ => return None,
+        };
+        let operator = offset(&self.code.source, position);
+        let (start, end) = (self.start(a), self.end(b));
+        let text = |from: usize, to: usize| self.code.source.text[from..to].trim().trim_end_matches(')').to_owned();
+        let (left, right) = (text(start, operator), text(self.start(b), end));
+        // `0.3 < laser.front < 0.6` compares what the first comparison says.
+        if let (true, Expr::FnCall(inner, _)) = (flag_first && comparison.orders(), a)
+            && let [_, middle] = inner.args.as_slice()
+            && Comparison::of(&inner.name).is_some()
+        {
+            let message = format!("this compares the truth value of `{left}` with {right}");
+            let help = format!("write {left} && {} {} {right}", text(self.start(middle), operator), call.name);
+            return Some(self.mistake(message, operator..end, "true or false is no number", help));
+        }
+        let name = text(self.start(flag), if flag_first { operator } else { end });
+        let (never, help) = match (comparison, self.is_zero(if flag_first { b } else { a })) {
+            (Comparison::Unequal, _) => ("always true", format!("write {name}, or !{name}")),
+            (Comparison::Equal, true) => ("never true", format!("write !{name}")),
+            _ => ("never true", format!("write {name}")),
+        };
+        let message = "a truth value cannot be compared with a number";
+        let marked = if flag_first { operator..end } else { start..end };
+        Some(self.mistake(message, marked, &format!("{never}: {name} is true or false"), help))
+    }
+
+    fn no_flag(&self, number: &Expr) -> Diagnostic {
+        let (start, end) = (self.start(number), self.end(number));
+        let help = format!("compare it: {} < 0.5", &self.code.source.text[start..end]);
+        self.mistake("a number is no truth value", start..end, "this is a number", help)
+    }
+
+    fn no_number(&self, flag: &Expr) -> Diagnostic {
+        let (start, end) = (self.start(flag), self.end(flag));
+        let help = format!("write if {} {{ 1.0 }} else {{ 0.0 }} in a function", &self.code.source.text[start..end]);
+        self.mistake("a truth value is no number", start..end, "this is true or false", help)
+    }
+
+    fn mistake(&self, message: impl Into<String>, at: std::ops::Range<usize>, label: &str, help: String) -> Diagnostic {
+        Diagnostic::new("E-SCRIPT-TYPE", message).at(&self.code.source, at, label).help(help)
+    }
+
+    fn is_zero(&self, expr: &Expr) -> bool {
+        matches!(expr, Expr::IntegerConstant(0, _)) || matches!(expr, Expr::FloatConstant(value, _) if **value == 0.0)
+    }
+
+    fn start(&self, expr: &Expr) -> usize {
+        offset(&self.code.source, first(expr))
+    }
+
+    /// The end of an operand: of its last name, number or bracket.
+    fn end(&self, expr: &Expr) -> usize {
+        let start = match expr {
+            Expr::FnCall(call, _) if call.is_operator_call() && !call.args.is_empty() => {
+                return call.args.last().map_or(0, |last| self.end(last));
+            }
+            Expr::And(parts, _) | Expr::Or(parts, _) => return parts.last().map_or(0, |last| self.end(last)),
+            other => self.start(other),
+        };
+        let mut depth = 0_i32;
+        for (index, c) in self.code.plain[start..].char_indices() {
+            match c {
+                '(' | '[' => depth += 1,
+                ')' | ']' if depth > 0 => depth -= 1,
+                _ if depth > 0 || c.is_alphanumeric() || matches!(c, '_' | '.') => {}
+                _ => return start + index,
+            }
+        }
+        self.code.plain.len()
+    }
+
+    /// What an expression is, if its text says so.
+    fn kind(&self, expr: &Expr) -> Option<Kind> {
+        match expr {
+            Expr::BoolConstant(..) | Expr::And(..) | Expr::Or(..) => Some(Kind::Flag),
+            Expr::FloatConstant(..) | Expr::IntegerConstant(..) => Some(Kind::Number),
+            Expr::FnCall(call, _) if call.name == "!" || Comparison::of(&call.name).is_some() => Some(Kind::Flag),
+            Expr::FnCall(call, _) => {
+                let known =
+                    Arithmetic::of(&call.name).is_some() && call.args.iter().all(|side| self.kind(side).is_some());
+                let function = FUNCTIONS.iter().any(|row| row.name == call.name && !row.form.starts_with("array."));
+                (known || function).then_some(Kind::Number)
+            }
+            _ => self.fact(expr),
+        }
+    }
+
+    fn fact(&self, expr: &Expr) -> Option<Kind> {
+        let access = Access::of(expr)?;
+        let by_argument = self.facts.contains(&access.root);
+        let (group, links) = if by_argument { access.group_of_facts()? } else { access.group()? };
+        if !is_group(group) || !by_argument && access.is_local {
+            return None;
+        }
+        let fact = fact_of(group, links)?;
+        Some(if fact.kind() == "true or false" { Kind::Flag } else { Kind::Number })
+    }
+}
