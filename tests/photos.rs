@@ -36,6 +36,11 @@ fn png(cells: &[(u32, u32)]) -> Vec<u8> {
     encoded(&photograph(cells), ImageFormat::Png)
 }
 
+/// A photograph whose colour depends on the column of pixels.
+fn painted(colour: impl Fn(u32) -> [u8; 3]) -> Vec<u8> {
+    encoded(&RgbImage::from_fn(160, 120, |x, _| Rgb(colour(x))), ImageFormat::Png)
+}
+
 /// The header of a PNG says another size, with a checksum that fits.
 fn pretend_size(mut png: Vec<u8>, size: u32) -> Vec<u8> {
     png[16..20].copy_from_slice(&size.to_be_bytes());
@@ -292,4 +297,39 @@ fn a_photograph_of_a_shipped_behaviour_is_seen_through_all_its_filters() {
     let script = root().join("scripts/wall.rhai");
     let (status, text) = told(&bench, &["filter", script.to_str().unwrap(), "a.png", "--out", "x"]);
     assert_eq!((status, text.as_str()), (0, "a.png: state 48, columns 0 0 3\npictures: x\n"));
+}
+
+#[test]
+fn photographs_need_no_world_that_shows_what_the_filters_look_for() {
+    let bench = Bench::new();
+    bench.write(
+        "yellow.rhai",
+        "world(\"nowhere\"); filter(\"colour\", #{ hue_deg: 50 });\nrule \"seen\" when camera.seen => 1;",
+    );
+    bench.write("a.png", painted(|x| if x < 80 { [230, 200, 20] } else { [90, 90, 90] }));
+    let output = bench.engine(&["filter", "yellow.rhai", "a.png", "--json"]);
+    let all: Vec<Value> = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    // The left half is yellow: of the three columns the first wholly, the second half.
+    assert_eq!(all[0]["coverage"], 0.5);
+    let cells: Vec<f64> = all[0]["cells"].as_array().unwrap().iter().map(|share| share.as_f64().unwrap()).collect();
+    assert!(cells.len() == 9 && cells[0] == 1.0 && (cells[1] - 0.5).abs() < 0.02 && cells[2] == 0.0, "{cells:?}");
+    let mask = image::open(bench.path().join(all[0]["mask"].as_str().unwrap())).unwrap().into_luma8();
+    assert_eq!((mask.width(), mask.height()), (160, 120));
+    assert_eq!(mask.pixels().filter(|pixel| pixel.0[0] == 255).count(), 160 * 120 / 2);
+}
+
+#[test]
+fn images_that_all_have_one_state_are_told() {
+    let bench = Bench::new();
+    for index in 0..6 {
+        bench.write(&format!("photos/{index}.png"), painted(|_| [10 * index, 50, 50]));
+    }
+    let output = bench.engine(&["filter", "short.rhai", "photos"]);
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(
+        text.contains("one state (0) for 6 of 6 images, with every cell empty: lower the filter's threshold"),
+        "{text}"
+    );
+    assert_eq!(output.status.code(), Some(1));
 }

@@ -250,7 +250,7 @@ impl Plan {
     }
 }
 
-fn changed(settings: &Settings, overrides: &Overrides) -> Result<Settings> {
+pub(super) fn changed(settings: &Settings, overrides: &Overrides) -> Result<Settings> {
     let mut settings = settings.clone();
     for pair in &overrides.set {
         set(&mut settings, pair)?;

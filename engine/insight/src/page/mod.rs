@@ -31,6 +31,7 @@ pub use checked::{CheckView, FindingView};
 pub use document::{Document, RuleView, SettingView};
 pub use ground::{Ground, MoverOutline, SolidOutline};
 pub use html::{Page, page};
+pub use picture::mask_png;
 pub use seed::{SeedData, SeedView, StateRow};
 pub use shot::{Shot, ShotMaker, StagePicture, shot_of};
 pub use track::{MOST_TRACK_STEPS, Moments, MoverTrack, ScanShape, Track};

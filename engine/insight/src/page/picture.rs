@@ -22,10 +22,7 @@ pub(super) fn data_address(pixels: &[u8], size_px: (usize, usize), format: Forma
     }
     let mut bytes = Vec::new();
     let (written, kind): (ImageResult<()>, &str) = match format {
-        Format::Mask => {
-            let png = PngEncoder::new_with_quality(&mut bytes, CompressionType::Default, FilterType::NoFilter);
-            (png.write_image(pixels, width, height, ExtendedColorType::L8), "png")
-        }
+        Format::Mask => (write_mask(pixels, (width, height), &mut bytes), "png"),
         Format::Grey => {
             let jpeg = JpegEncoder::new_with_quality(&mut bytes, QUALITY);
             (jpeg.write_image(pixels, width, height, ExtendedColorType::L8), "jpeg")
@@ -37,6 +34,25 @@ pub(super) fn data_address(pixels: &[u8], size_px: (usize, usize), format: Forma
     };
     written.map_err(|error| failed(&error.to_string()))?;
     Ok(format!("data:image/{kind};base64,{}", base64(&bytes)))
+}
+
+/// A mask as the bytes of a PNG file.
+///
+/// # Errors
+/// If the pixels do not fit the size.
+pub fn mask_png(pixels: &[u8], size_px: (usize, usize)) -> Result<Vec<u8>> {
+    if pixels.len() != size_px.0 * size_px.1 {
+        return Err(failed("its pixels do not fit its size"));
+    }
+    let mut bytes = Vec::new();
+    let written = write_mask(pixels, (size_px.0 as u32, size_px.1 as u32), &mut bytes);
+    written.map_err(|error| failed(&error.to_string()))?;
+    Ok(bytes)
+}
+
+fn write_mask(pixels: &[u8], (width, height): (u32, u32), bytes: &mut Vec<u8>) -> ImageResult<()> {
+    let png = PngEncoder::new_with_quality(bytes, CompressionType::Default, FilterType::NoFilter);
+    png.write_image(pixels, width, height, ExtendedColorType::L8)
 }
 
 fn failed(reason: &str) -> Box<Diagnostic> {

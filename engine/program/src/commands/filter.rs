@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use engine::diagnostic::{Diagnostic, Result, printable};
-use engine::experiment::Decider;
-use engine::experiment::{Overrides, Plan};
+use engine::experiment::{Decider, Overrides, Sight};
 use engine::filter::{Catalogue, Chain};
 use engine::learner::Policy;
 use engine::sensors::observation::Image;
@@ -13,13 +12,20 @@ use engine::sensors::{load_photograph, photograph_files};
 use engine::settings::Settings;
 use engine::state::Grid;
 use insight::folder::create_folder;
-use insight::report::{FrameData, FramePanel, Picture, frame};
+use insight::page::mask_png;
+use insight::report::{FrameData, FramePanel, Picture, frame, write_atomic};
 use insight::store::StoredRun;
 use pack::Runnable;
 
 use super::behaviour::open_to_look;
-use crate::cli::FilterArguments;
+use super::sources::catalogue;
+use crate::cli::{FilterArguments, FilterSources};
 use crate::console::{Console, ConsoleError};
+
+/// From so many images on it is told if most of them have one state.
+const FEW_IMAGES: usize = 5;
+/// Most of them: this share.
+const ALIKE: f64 = 0.8;
 
 /// What is told of one photograph.
 #[derive(serde::Serialize)]
@@ -28,6 +34,12 @@ struct SeenImage {
     state: usize,
     /// Filled cells of each column, from the left.
     columns: Vec<usize>,
+    /// Share of the image that the filters left.
+    coverage: f64,
+    /// The same of each cell, row by row from the top left.
+    cells: Vec<f32>,
+    /// What the filters left, as a PNG file of the camera's size: 255 and 0.
+    mask: String,
     picture: String,
     /// How often training met the state; only with `--run`.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -40,8 +52,7 @@ struct SeenImage {
 pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
     let overrides = Overrides { world: None, steps: None, test_steps: None, set: arguments.set.clone() };
     // A pack's filters stand in a folder that lives as long as it does.
-    let Runnable { plan, unpacked: _unpacked } =
-        open_to_look(&arguments.behaviour, &overrides, &arguments.filters, false)?;
+    let (plan, _unpacked) = sight(&arguments.behaviour, &overrides, &arguments.filters)?;
     if !plan.learns() {
         let message = format!("'{}' combines policies, and each sees with filters of its own", plan.behaviour.name());
         let error = Diagnostic::new("E-COMBINES", message).help("give the script of one of its policies");
@@ -62,10 +73,16 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
         let name = unused(file, &names);
         draw_photograph(file, &image, &chain, &grid, state)?.write(&out, &name)?;
         let visits = met.as_ref().map(|policy| visits(policy, state));
+        let mask = out.join(format!("{name}-mask.png"));
+        write_atomic(&mask, &mask_png(chain.mask(), (image.width_px, image.height_px))?)?;
+        let pixels = image.width_px * image.height_px;
         let seen = SeenImage {
             file: file.display().to_string(),
             state,
             columns: columns(&grid, state),
+            coverage: f64::from(grid.counts().iter().sum::<u32>()) / pixels as f64,
+            cells: shares(&grid),
+            mask: mask.display().to_string(),
             picture: out.join(format!("{name}.png")).display().to_string(),
             visits,
             new: visits.map(|visits| visits == 0),
@@ -76,13 +93,14 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
     }
     console.json(&all)?;
     console.line(&format!("pictures: {}", out.display()))?;
+    let alike = told_apart(&all, &grid, met.as_ref(), console)?;
     if met.is_none() {
-        return Ok(0);
+        return Ok(u8::from(alike));
     }
     let share = all.iter().filter(|seen| seen.new == Some(true)).count() as f64 / all.len() as f64;
     console.line(&format!("new:      {:.0} % of {} images show a state never met", 100.0 * share, all.len()))?;
     if share <= arguments.new_share {
-        return Ok(0);
+        return Ok(u8::from(alike));
     }
     console.line(&format!(
         "warning:  more than {:.0} %: training did not see what these images show",
@@ -91,8 +109,48 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
     Ok(1)
 }
 
-/// What a stored run learned, if it sees as this plan does.
-fn met(run: &Path, plan: &Plan) -> Result<Policy> {
+/// What a behaviour sees with. Of a script no world is needed: photographs have nothing to do with it.
+fn sight(argument: &Path, overrides: &Overrides, filters: &FilterSources) -> Result<(Sight, Option<Runnable>)> {
+    if argument.is_file() && argument.extension().is_some_and(|ending| ending == "rhai") {
+        return Ok((Sight::load(argument, overrides, catalogue(filters)?)?, None));
+    }
+    let pack = open_to_look(argument, overrides, filters, false)?;
+    Ok((Sight::from(&pack.plan), Some(pack)))
+}
+
+/// Says whether most of the images have one state: then the filters do not tell them apart, whatever training met.
+fn told_apart(
+    all: &[SeenImage],
+    grid: &Grid,
+    met: Option<&Policy>,
+    console: &mut Console,
+) -> std::result::Result<bool, ConsoleError> {
+    let count = |state: usize| all.iter().filter(|seen| seen.state == state).count();
+    let Some(state) = all.iter().map(|seen| seen.state).max_by_key(|state| (count(*state), *state)) else {
+        return Ok(false);
+    };
+    let (images, most) = (all.len(), count(state));
+    if images < FEW_IMAGES || (most as f64) < ALIKE * images as f64 {
+        return Ok(false);
+    }
+    let cells = grid.cells(state);
+    let why = match (cells.iter().all(|cell| *cell), cells.iter().any(|cell| *cell)) {
+        (true, _) => ", with every cell full: raise the filter's threshold, or grid.occupied",
+        (_, false) => ", with every cell empty: lower the filter's threshold, or grid.occupied",
+        _ => "",
+    };
+    console.line(&format!("warning:  one state ({state}) for {most} of {images} images{why}"))?;
+    if let Some(policy) = met {
+        let all_visits: u64 = policy.rows().iter().flatten().map(|row| row.visits).sum();
+        let share = 100.0 * visits(policy, state) as f64 / all_visits.max(1) as f64;
+        console.line(&format!("          training was in that state in {share:.1} % of its steps"))?;
+    }
+    console.line("          the filter does not tell these images apart")?;
+    Ok(true)
+}
+
+/// What a stored run learned, if it sees as this behaviour does.
+fn met(run: &Path, plan: &Sight) -> Result<Policy> {
     let stored = StoredRun::load_with(run, Arc::clone(&plan.filters))?;
     let (own, wanted) = (&stored.plan.settings, &plan.settings);
     let shown = printable(&run.display().to_string());
@@ -160,9 +218,7 @@ fn draw_photograph(file: &Path, image: &Image, chain: &Chain, grid: &Grid, state
         format: filter.writes,
         pixels,
     }));
-    let (rows, columns) = grid.size();
-    let shares: Vec<f32> =
-        grid.counts().iter().enumerate().map(|(cell, count)| *count as f32 / grid.area_px(cell) as f32).collect();
+    let ((rows, columns), shares) = (grid.size(), shares(grid));
     let title = printable(&file.file_name().unwrap_or_default().to_string_lossy());
     frame(&FrameData {
         title: &title,
@@ -176,6 +232,11 @@ fn draw_photograph(file: &Path, image: &Image, chain: &Chain, grid: &Grid, state
         filled: &grid.cells(state),
         state,
     })
+}
+
+/// Share of each cell that the filters left.
+fn shares(grid: &Grid) -> Vec<f32> {
+    grid.counts().iter().enumerate().map(|(cell, count)| *count as f32 / grid.area_px(cell) as f32).collect()
 }
 
 fn columns(grid: &Grid, state: usize) -> Vec<usize> {
