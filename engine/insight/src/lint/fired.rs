@@ -9,6 +9,8 @@ use engine::judge::{FactId, Reach};
 
 /// Steps in which a rule must have been asked before anything is said about all of them.
 const ENOUGH: u64 = 200;
+/// A spin that fails so often in 1,000 steps does not escape, whichever rule it is that sees it.
+const CAUGHT: f64 = 20.0;
 /// Share of the steps of a spin in which a condition must hold for its persistence to be blamed.
 const OFTEN: f64 = 0.25;
 
@@ -109,6 +111,11 @@ fn spun(plan: &Plan, index: usize, needed: u64, exploits: &Exploits) -> Option<F
     let spins = exploits.behaviours.iter().filter(|exploit| exploit.cheat && exploit.behaviour.starts_with("spin"));
     let spins: Vec<&RuleTrial> = spins.filter_map(|exploit| exploit.rules.get(index)).collect();
     let escapes = |seen: &&RuleTrial| seen.fired == 0 && seen.held as f64 >= OFTEN * seen.looked as f64;
+    // Whatever spins is caught by another rule.
+    let caught = exploits.behaviours.iter().filter(|exploit| exploit.cheat && exploit.behaviour.starts_with("spin"));
+    if caught.clone().count() > 0 && caught.clone().all(|exploit| exploit.failures_per_1000 >= CAUGHT) {
+        return None;
+    }
     if needed < 2 || spins.is_empty() || !spins.iter().all(escapes) {
         return None;
     }

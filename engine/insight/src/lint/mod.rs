@@ -9,6 +9,7 @@ mod finding;
 mod fired;
 mod loops;
 mod model;
+mod outcome;
 mod scale;
 mod setup;
 mod shadow;
@@ -26,6 +27,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use engine::diagnostic::{Kind, Result};
 use engine::experiment::Plan;
+use engine::judge::FactId;
+use engine::script::Condition;
 
 /// The most findings of one behaviour that are kept.
 pub const MOST_FINDINGS: usize = 20;
@@ -88,6 +91,8 @@ fn look(plan: &Plan, threads: usize, stop: &AtomicBool) -> Result<Report> {
                 scale::observed(plan, &trial, &mut findings);
                 choice::observed(plan, &trial, &found, &mut findings);
                 verdict::check_exploits(plan, &found, &mut findings);
+                outcome::check_values(plan, &trial, &mut findings);
+                outcome::check_success(plan, threads, stop, &mut findings)?;
                 exploits = Some(found);
             }
             // The script's own mistake is a finding like others; what a limit stopped is not.
@@ -114,5 +119,16 @@ pub fn read(plan: &Plan) -> Vec<Finding> {
     scale::written(plan, &mut findings);
     setup::check_setup(plan, &mut findings);
     choice::written(plan, &mut findings);
+    outcome::check_goals(plan, &mut findings);
     findings
+}
+
+/// The facts that a condition wants to be true.
+fn read_flags(condition: &Condition) -> impl Iterator<Item = FactId> {
+    let found = match condition {
+        Condition::Flag(fact, false) => vec![fact.id],
+        Condition::All(parts) | Condition::Any(parts) => parts.iter().flat_map(read_flags).collect(),
+        _ => Vec::new(),
+    };
+    found.into_iter()
 }

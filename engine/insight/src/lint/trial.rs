@@ -47,6 +47,8 @@ pub(super) struct RuleTrial {
     pub longest: u64,
     /// The greatest value that it added, either way.
     pub largest: f64,
+    /// The least and the greatest value that it added; nothing if it never fired.
+    pub values: Option<(f64, f64)>,
     /// What its condition read.
     pub facts: Vec<FactTrial>,
     now: u64,
@@ -133,9 +135,17 @@ impl RuleTrial {
         if other.largest.abs() > self.largest.abs() {
             self.largest = other.largest;
         }
+        if let Some((least, greatest)) = other.values {
+            self.range(least, greatest);
+        }
         for fact in &other.facts {
             self.read(fact.clone());
         }
+    }
+
+    fn range(&mut self, least: f64, greatest: f64) {
+        let (low, high) = self.values.unwrap_or((least, greatest));
+        self.values = Some((low.min(least), high.max(greatest)));
     }
 
     fn read(&mut self, read: FactTrial) {
@@ -150,6 +160,7 @@ impl RuleTrial {
 
     fn fire(&mut self, value: f64) {
         self.fired += 1;
+        self.range(value, value);
         if value.abs() > self.largest.abs() {
             self.largest = value;
         }

@@ -11,6 +11,13 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
       Each line of the table was driven in the simulator. Reward progress, or punish what the robot does instead of it.",
     ),
     (
+        "W-GOAL-CONTACT",
+        Kind::Input,
+        "A rule ends the attempt with something good when the body touches something or falls.\n\
+         Rewards from elsewhere often pay a little for leaving the track; with 'then recover' that makes a goal of every crash. \
+         If a crash is no goal, write 'then fail'.",
+    ),
+    (
         "W-LOOP",
         Kind::Input,
         "A function goes over the beams of the laser one by one, in every step.\n\
@@ -58,6 +65,13 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
       Keep rewards between -1 and 1, or change learner.temperature and learner.temperature_end with them.",
     ),
     (
+        "W-SUCCESS-IDLE",
+        Kind::Input,
+        "A robot that knows nothing, or one that does not look, meets every condition of the script's success.\n\
+         Such a success says nothing. Name what the robot must do: laps, goals, or so many times the metres for each failure \
+         that an untrained robot makes.",
+    ),
+    (
         "W-UNIT",
         Kind::Input,
         "A fact is compared with a number that it never comes near: most often centimetres for metres or degrees for radians.\n\
@@ -68,5 +82,12 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
         Kind::Input,
         "Something is set, defined or written and has no effect with this script and this world.\n\
       Often a name is misspelt elsewhere, or a setting belongs to another way of learning. Use it or take it out.",
+    ),
+    (
+        "W-VALUE-CONSTANT",
+        Kind::Input,
+        "A value that reads what is measured was the same in every step that was tried.\n\
+         It teaches nothing. Often a min and a max are exchanged, or a limit is never passed; if the value is meant to be fixed, \
+         write it as a number.",
     ),
 ];

@@ -1,0 +1,92 @@
+//! What a script calls a goal or a success, and whoever meets it without doing anything.
+
+use std::sync::atomic::AtomicBool;
+
+use super::exploit::cheats;
+use super::trial::LintTrial;
+use super::{Finding, read_flags};
+use engine::diagnostic::{Result, printable};
+use engine::experiment::{Choice, Chooser, Plan, in_parallel, test_choices, test_untrained};
+use engine::judge::FactId;
+use engine::outcome::Then;
+
+/// The seed of the tests.
+const SEED: u64 = 0xd0_0e;
+/// Steps in which a value must have been given before anything is said about all of them.
+const ENOUGH: u64 = 200;
+
+/// Goals by accident: a crash that pays.
+pub(super) fn check_goals(plan: &Plan, findings: &mut Vec<Finding>) {
+    let rules = plan.behaviour.outline().rules.iter().enumerate();
+    for (index, rule) in rules {
+        let pays = plan.behaviour.fixed_value(index).is_some_and(|value| value > 0.0);
+        let goal = rule.then == Some(Then::Goal) || rule.then == Some(Then::Recover) && pays;
+        let accident = |fact: FactId| matches!(fact, FactId::RobotContact | FactId::RobotFallen);
+        if goal && read_flags(&rule.condition).any(accident) {
+            let name = printable(&plan.behaviour.rules()[index].name);
+            let message = format!("rule \"{name}\" calls an accident a goal");
+            let label = "ends the attempt with something good";
+            let help = "is a crash a goal? write 'then fail', or leave the attempt going on";
+            findings
+                .push(Finding::warning(plan, "W-GOAL-CONTACT", rule.condition_span.clone(), message).say(label, help));
+        }
+    }
+}
+
+/// Values that read what is measured, and are always the same.
+pub(super) fn check_values(plan: &Plan, trial: &LintTrial, findings: &mut Vec<Finding>) {
+    let outline = plan.behaviour.outline();
+    for (index, text) in plan.behaviour.rules().iter().enumerate() {
+        let span = outline.rules.get(index).map(|rule| rule.value_span.clone()).or_else(|| outline.reward.clone());
+        let (None, Some(span)) = (plan.behaviour.fixed_value(index), span) else { continue };
+        let rule = &trial.rules[index];
+        let same = rule.values.filter(|(least, greatest)| rule.fired >= ENOUGH && least == greatest);
+        let Some((value, _)) = same else { continue };
+        let what = if index == outline.rules.len() {
+            "'fn reward'".to_owned()
+        } else {
+            format!("rule \"{}\"", printable(&text.name))
+        };
+        let message = format!("{what} gave {value} in every one of {} steps, whatever it reads", rule.fired);
+        let help = "look for a min and a max that are exchanged, or for a limit that is never passed";
+        findings.push(Finding::warning(plan, "W-VALUE-CONSTANT", span, message).say("always the same", help));
+    }
+}
+
+/// A success of the script's own that a robot meets which knows nothing, or which does not look.
+pub(super) fn check_success(plan: &Plan, threads: usize, stop: &AtomicBool, findings: &mut Vec<Finding>) -> Result<()> {
+    let success = plan.success();
+    let Some(span) = success.conditions().iter().find_map(|condition| condition.span.clone()) else { return Ok(()) };
+    let (untrained, cheats) = (test_untrained(plan, SEED, stop)?, cheats(plan));
+    let jobs: Vec<u64> = (0..cheats.len() as u64).collect();
+    let tested = in_parallel(&jobs, threads, |job| {
+        let mut blind = Blind { choose: &cheats[job as usize].1, step: 0 };
+        Ok(test_choices(plan, SEED, stop, &mut blind, &mut ())?.figures)
+    })?;
+    let blind = cheats.iter().zip(&tested).find(|(_, figures)| success.is_met_by(figures, &untrained));
+    let who = if success.is_met_by(&untrained, &untrained) {
+        "a robot that knows nothing".to_owned()
+    } else if let Some(((name, _), _)) = blind {
+        format!("a robot that does not look ('{name}')")
+    } else {
+        return Ok(());
+    };
+    let message = format!("{who} meets every condition of success");
+    let help = "name what it must do: test.laps >= 3, or test.metres_per_failure > 5 * untrained.metres_per_failure";
+    findings.push(Finding::warning(plan, "W-SUCCESS-IDLE", span, message).say("not enough", help));
+    Ok(())
+}
+
+/// A cheat in the whole test.
+struct Blind<'a> {
+    choose: &'a (dyn Fn(u64, usize) -> usize + Send + Sync),
+    step: u64,
+}
+
+impl Chooser for Blind<'_> {
+    fn choose(&mut self, _: &[usize]) -> Result<Choice> {
+        let action = (self.choose)(self.step, 0);
+        self.step += 1;
+        Ok(Choice { action, explored: false })
+    }
+}
