@@ -76,7 +76,7 @@ impl Chain {
 
     /// Everything that is wrong with a chain as it is written, before any filter is tried; in the order of the stages.
     #[must_use]
-    pub fn faults(settings: &[FilterSettings], catalogue: &Catalogue) -> Vec<ChainError> {
+    pub(crate) fn faults(settings: &[FilterSettings], catalogue: &Catalogue) -> Vec<ChainError> {
         let mut faults = Vec::new();
         let mut before: Vec<&'static Descriptor> = Vec::with_capacity(settings.len());
         // What comes out of the stage before; unknown behind an unknown filter.
@@ -112,7 +112,7 @@ impl Chain {
 
     /// What its first filter likes best, colour or grey: the mask of an image in this format is that of its colours.
     #[must_use]
-    pub fn likes(&self) -> Format {
+    pub(crate) fn likes(&self) -> Format {
         self.stages.first().and_then(|stage| stage.descriptor.reads.first()).copied().unwrap_or(Format::Rgb)
     }
 
@@ -137,7 +137,7 @@ impl Chain {
 
     /// The mask that [`Chain::apply`] made last.
     #[must_use]
-    pub fn mask(&self) -> &[u8] {
+    pub(crate) fn mask(&self) -> &[u8] {
         self.stages.last().map_or(&[], |stage| &stage.output)
     }
 
