@@ -31,7 +31,8 @@ mod trail;
 mod truth;
 
 pub use certainty::CertaintyGrid;
-pub use choosers::{ByState, Frozen, Learns, Recorded, Together};
+pub use choosers::{ByState, Frozen, Learns};
+use choosers::{Recorded, Together};
 pub use combination::Member;
 pub use cycle::Cycle;
 pub use disagreement::{CombinationFigures, Disagreement, DisagreementFigures, Disagreements, MemberFigures};
@@ -53,4 +54,3 @@ pub use summary::{RuleTotal, Spread, Summary, TestFigures, learned_at};
 pub use tally::{Tally, WINDOW_STEPS, Window};
 pub use testing::{CombinationTest, Decider, TestRun, frozen, test, test_and_watch, test_choices, test_robot};
 pub use trail::Trail;
-pub use truth::{Spells, Truth};

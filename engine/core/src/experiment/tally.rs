@@ -41,7 +41,7 @@ impl Tally {
     }
 
     /// Counts one step; true if it ended a window.
-    pub fn count(&mut self, step: &Step, fired: &[Option<f64>]) -> bool {
+    pub(super) fn count(&mut self, step: &Step, fired: &[Option<f64>]) -> bool {
         if self.windows.last().is_none_or(|window| window.steps == WINDOW_STEPS) {
             self.windows.push(Window { steps: 0, reinforcement: 0.0 });
             self.by_rule.resize(self.windows.len() * self.fired.len(), 0.0);

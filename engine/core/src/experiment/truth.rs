@@ -18,7 +18,7 @@ const STANDING_M: f64 = 0.2;
 
 /// Follows the true pose through a test.
 #[derive(Debug, Clone)]
-pub struct Truth {
+pub(super) struct Truth {
     layout: Arc<Layout>,
     progress: Option<RouteProgress>,
     last: Pose,
@@ -34,7 +34,7 @@ pub struct Truth {
 
 /// Counts of spells of 20 s.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Spells {
+pub(super) struct Spells {
     /// All whole spells.
     pub all: u64,
     /// Full turn or more on a radius below 0.3 m.
@@ -59,7 +59,7 @@ struct Spell {
 impl Truth {
     /// Begins at the robot's present pose; `None` for a robot that does not know where it is.
     #[must_use]
-    pub fn new(robot: &impl Robot, layout: &Arc<Layout>, period_s: f64, steps: u64) -> Option<Self> {
+    pub(super) fn new(robot: &impl Robot, layout: &Arc<Layout>, period_s: f64, steps: u64) -> Option<Self> {
         let pose = robot.whereabouts()?.pose;
         let progress = layout.lap.map(|lap| RouteProgress::new(&layout.routes[lap], Point2::new(pose.x_m, pose.y_m)));
         let prey_m = Vec::with_capacity(if robot.prey().is_some() { steps as usize } else { 0 });
@@ -105,7 +105,7 @@ impl Truth {
 
     /// Signed progress along the lap route, metres; `None` in a world without one.
     #[must_use]
-    pub fn net_m(&self) -> Option<f64> {
+    pub(super) fn net_m(&self) -> Option<f64> {
         self.progress.as_ref().map(RouteProgress::net_m)
     }
 
