@@ -41,7 +41,7 @@ pub enum Ending {
 impl Ending {
     /// How a step ended the attempt, if the script asks for recovery: with a reward above 0 it reached its goal.
     #[must_use]
-    pub fn of(recover: bool, reward: f64) -> Option<Self> {
+    pub(crate) fn of(recover: bool, reward: f64) -> Option<Self> {
         recover.then_some(if reward > 0.0 { Self::Goal } else { Self::Failure })
     }
 }
