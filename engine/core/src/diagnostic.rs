@@ -14,7 +14,7 @@ mod render;
 pub use codes::{all_codes, code_page};
 pub use excerpt::excerpt;
 use lines::Lines;
-pub use mistakes::{MOST_MISTAKES, Mistakes};
+pub(crate) use mistakes::{MOST_MISTAKES, Mistakes};
 
 /// The result of anything that a user's input can make fail.
 pub type Result<T> = std::result::Result<T, Box<Diagnostic>>;
@@ -86,7 +86,7 @@ impl SourceText {
 
     /// The byte range of one line, 1-based, without its line break; an empty range at the end if there is no such line.
     #[must_use]
-    pub fn line_range(&self, line: usize) -> Range<usize> {
+    pub(crate) fn line_range(&self, line: usize) -> Range<usize> {
         let (lines, end) = (self.lines(), self.text.len());
         let Some(start) = lines.start(line) else { return end..end };
         let text = &self.text[start..lines.start(line + 1).unwrap_or(end)];
@@ -95,7 +95,7 @@ impl SourceText {
 
     /// The byte offset of a line and a column, both 1-based and counted in characters; clamped to the line's end.
     #[must_use]
-    pub fn offset(&self, line: usize, column: usize) -> usize {
+    pub(crate) fn offset(&self, line: usize, column: usize) -> usize {
         let range = self.line_range(line);
         self.lines().offset(&self.text, line, column).map_or(range.end, |at| at.min(range.end))
     }
@@ -112,7 +112,7 @@ impl SourceText {
 
     /// The byte range of the word (letters, digits, underscore) at `offset`, at least one character long where possible.
     #[must_use]
-    pub fn word_at(&self, offset: usize) -> Range<usize> {
+    pub(crate) fn word_at(&self, offset: usize) -> Range<usize> {
         let tail = &self.text[offset.min(self.text.len())..];
         let word = tail.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(tail.len());
         let length = if word > 0 { word } else { tail.chars().next().filter(|c| *c != '\n').map_or(0, char::len_utf8) };
