@@ -108,12 +108,12 @@ impl Camera {
 
     /// How many frames were rendered: with the seed, the address of the next frame's noise.
     #[must_use]
-    pub fn frames(&self) -> u64 {
+    pub(crate) fn frames(&self) -> u64 {
         self.frame
     }
 
     /// Continues as if `frames` frames had been rendered.
-    pub fn set_frames(&mut self, frames: u64) {
+    pub(crate) fn set_frames(&mut self, frames: u64) {
         self.frame = frames;
     }
 

@@ -31,4 +31,5 @@ pub use camera::Camera;
 pub use laser::Laser;
 #[cfg(feature = "photographs")]
 pub use photograph::{load_photograph, photograph_files};
-pub use watch::{CameraWatch, self_test};
+pub use watch::CameraWatch;
+pub(crate) use watch::self_test;

@@ -72,7 +72,7 @@ impl CameraWatch {
 ///
 /// # Errors
 /// `E-CAMERA-BLANK` if every heading shows one colour only, `E-CAMERA-FROZEN` if all show the same image.
-pub fn self_test(camera: &mut Camera, world_from_robot: &Isometry3, moving: &[Solid]) -> Result<()> {
+pub(crate) fn self_test(camera: &mut Camera, world_from_robot: &Isometry3, moving: &[Solid]) -> Result<()> {
     let frames = camera.frames();
     let (mut first, mut image) = (Image::new(0, 0), Image::new(0, 0));
     let (mut blank, mut frozen) = (true, true);

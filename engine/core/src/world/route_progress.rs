@@ -10,7 +10,7 @@ const NEARER_M: f64 = 1.0;
 
 /// Signed, unwrapped distance along one route. Driving back counts down; driving round it twice counts two laps.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RouteProgress {
+pub(crate) struct RouteProgress {
     at: Point2,
     along_m: f64,
     net_m: f64,
@@ -19,7 +19,7 @@ pub struct RouteProgress {
 impl RouteProgress {
     /// No progress yet, beginning at the place of the route nearest to `at`.
     #[must_use]
-    pub fn new(route: &Route, at: Point2) -> Self {
+    pub(crate) fn new(route: &Route, at: Point2) -> Self {
         Self { at, along_m: route.nearest(at).0, net_m: 0.0 }
     }
 
@@ -27,7 +27,7 @@ impl RouteProgress {
     ///
     /// The nearest place is followed, not sought anew: far from the route it leaps between stretches, and circling in
     /// the middle of a room would count as laps. A change to a much nearer stretch counts nothing.
-    pub fn update(&mut self, route: &Route, at: Point2) {
+    pub(crate) fn update(&mut self, route: &Route, at: Point2) {
         let reach_m = (REACH_M + 2.0 * (at - self.at).norm()).min(0.49 * route.length_m());
         let (mut along_m, distance_m) = route.nearest_between(at, self.along_m - reach_m, self.along_m + reach_m);
         let step = along_m - self.along_m;
@@ -45,12 +45,12 @@ impl RouteProgress {
 
     /// RouteProgress so far, metres; negative if it is against the route's direction.
     #[must_use]
-    pub fn net_m(&self) -> f64 {
+    pub(crate) fn net_m(&self) -> f64 {
         self.net_m
     }
 
     /// Goes on from `at` without counting the way there: the robot was put there.
-    pub fn jump(&mut self, route: &Route, at: Point2) {
+    pub(crate) fn jump(&mut self, route: &Route, at: Point2) {
         (self.at, self.along_m) = (at, route.nearest(at).0);
     }
 }
