@@ -44,7 +44,7 @@ impl Random {
     /// The body's index stands in the upper half of the stream's number, above every named stream, so that no two
     /// bodies and no two consumers share one.
     #[must_use]
-    pub fn of_body(seed: u64, stream: Stream, body: u32) -> Self {
+    pub(crate) fn of_body(seed: u64, stream: Stream, body: u32) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         generator.set_stream(u64::from(body) << 32 | stream as u64);
         Self { generator }
@@ -52,13 +52,13 @@ impl Random {
 
     /// Where the stream stands, in words of 32 bits: the lower and the upper half of the number.
     #[must_use]
-    pub fn position(&self) -> (u64, u64) {
+    pub(crate) fn position(&self) -> (u64, u64) {
         let words = self.generator.get_word_pos();
         (words as u64, (words >> 64) as u64)
     }
 
     /// Puts the stream where it stood once, see [`Random::position`].
-    pub fn set_position(&mut self, low: u64, high: u64) {
+    pub(crate) fn set_position(&mut self, low: u64, high: u64) {
         self.generator.set_word_pos(u128::from(low) | u128::from(high) << 64);
     }
 
@@ -85,16 +85,16 @@ impl Random {
 }
 
 /// Length of [`normal_table`]'s part in which a run may start.
-pub const NORMAL_STARTS: usize = 1 << 15;
+pub(crate) const NORMAL_STARTS: usize = 1 << 15;
 /// How many draws follow every start of [`normal_table`].
-pub const NORMAL_RUN: usize = 1280 * 3;
+pub(crate) const NORMAL_RUN: usize = 1280 * 3;
 
 /// Draws from the normal distribution, computed once: `NORMAL_STARTS + NORMAL_RUN` of them.
 ///
 /// Sensor noise takes runs of consecutive draws from a start that the seed chooses: adding a run is a vector operation,
 /// and thousands of fresh draws for each frame would cost more than the frame.
 #[must_use]
-pub fn normal_table() -> &'static [f32] {
+pub(crate) fn normal_table() -> &'static [f32] {
     static TABLE: LazyLock<Vec<f32>> = LazyLock::new(|| {
         let mut random = Random::new(0, Stream::Camera);
         (0..NORMAL_STARTS + NORMAL_RUN).map(|_| random.normal() as f32).collect()
