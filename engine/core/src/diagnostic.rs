@@ -14,8 +14,7 @@ mod render;
 pub use codes::{all_codes, code_page};
 pub use excerpt::excerpt;
 use lines::Lines;
-pub(crate) use mistakes::MOST_MISTAKES;
-pub use mistakes::Mistakes;
+pub(crate) use mistakes::{MOST_MISTAKES, Mistakes};
 
 /// The result of anything that a user's input can make fail.
 pub type Result<T> = std::result::Result<T, Box<Diagnostic>>;
@@ -96,7 +95,7 @@ impl SourceText {
 
     /// The byte offset of a line and a column, both 1-based and counted in characters; clamped to the line's end.
     #[must_use]
-    pub fn offset(&self, line: usize, column: usize) -> usize {
+    pub(crate) fn offset(&self, line: usize, column: usize) -> usize {
         let range = self.line_range(line);
         self.lines().offset(&self.text, line, column).map_or(range.end, |at| at.min(range.end))
     }

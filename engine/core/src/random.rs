@@ -54,7 +54,7 @@ impl Random {
 
     /// Where the stream stands, in words of 32 bits: the lower and the upper half of the number.
     #[must_use]
-    pub fn position(&self) -> (u64, u64) {
+    pub(crate) fn position(&self) -> (u64, u64) {
         let words = self.generator.get_word_pos();
         (words as u64, (words >> 64) as u64)
     }

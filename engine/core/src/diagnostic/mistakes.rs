@@ -16,7 +16,7 @@ type At = (usize, usize);
 ///
 /// Of several at one place the first to be found is kept: whatever is found there later may follow from it.
 #[derive(Debug)]
-pub struct Mistakes {
+pub(crate) struct Mistakes {
     /// In the order in which their mistakes are told.
     files: Vec<PathBuf>,
     seen: BTreeSet<At>,
@@ -29,13 +29,13 @@ pub struct Mistakes {
 impl Mistakes {
     /// None yet; those of `source` will be told before those of other files.
     #[must_use]
-    pub fn new(source: &SourceText) -> Self {
+    pub(crate) fn new(source: &SourceText) -> Self {
         let (seen, kept) = (BTreeSet::new(), BTreeMap::new());
         Self { files: vec![source.path.clone()], seen, kept, elsewhere: Vec::new(), left_out: 0 }
     }
 
     /// Adds a mistake with its further ones, unless its place has one.
-    pub fn add(&mut self, mut mistake: Diagnostic) {
+    pub(crate) fn add(&mut self, mut mistake: Diagnostic) {
         self.left_out += std::mem::take(&mut mistake.left_out);
         let others = std::mem::take(&mut mistake.others);
         self.add_one(mistake);
@@ -59,12 +59,12 @@ impl Mistakes {
     }
 
     /// The value of a success; a failure is added.
-    pub fn take<T>(&mut self, result: Result<T>) -> Option<T> {
+    pub(crate) fn take<T>(&mut self, result: Result<T>) -> Option<T> {
         result.map_err(|mistake| self.add(*mistake)).ok()
     }
 
     /// Whether a mistake at this byte would be shown. If not it is counted, so that nobody has to put it into words.
-    pub fn wants(&mut self, source: &SourceText, start: usize) -> bool {
+    pub(crate) fn wants(&mut self, source: &SourceText, start: usize) -> bool {
         let at = (self.file(source), start);
         let late = self.kept.len() == MOST_MISTAKES && self.kept.last_key_value().is_some_and(|(last, _)| *last < at);
         if late {
@@ -75,7 +75,7 @@ impl Mistakes {
 
     /// Whether a mistake begins within these bytes.
     #[must_use]
-    pub fn within(&self, source: &SourceText, bytes: &Range<usize>) -> bool {
+    pub(crate) fn within(&self, source: &SourceText, bytes: &Range<usize>) -> bool {
         let file = self.files.iter().position(|path| *path == source.path);
         file.is_some_and(|file| {
             bytes.start < bytes.end && { self.seen.range((file, bytes.start)..(file, bytes.end)).next().is_some() }
@@ -84,13 +84,13 @@ impl Mistakes {
 
     /// Whether there is none.
     #[must_use]
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.count() == 0
     }
 
     /// How many there are.
     #[must_use]
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.seen.len() + self.elsewhere.len() + self.left_out
     }
 
@@ -98,7 +98,7 @@ impl Mistakes {
     ///
     /// # Errors
     /// If there is a mistake: the first, with the further ones.
-    pub fn end(self) -> Result<()> {
+    pub(crate) fn end(self) -> Result<()> {
         self.gathered().map_or(Ok(()), Diagnostic::fail)
     }
 

@@ -41,7 +41,7 @@ pub struct Frozen<'a> {
 impl<'a> Frozen<'a> {
     /// A policy with the softmax that fits it and a stream of its own.
     #[must_use]
-    pub fn new(policy: &'a Policy, softmax: Softmax, random: Random) -> Self {
+    pub(super) fn new(policy: &'a Policy, softmax: Softmax, random: Random) -> Self {
         Self { policy, softmax, random }
     }
 }
@@ -56,7 +56,7 @@ impl Chooser for Frozen<'_> {
 }
 
 /// Several policies as one, each in the state that its own eyes perceive.
-pub struct Together {
+pub(super) struct Together {
     combined: Combined,
     random: Random,
     disagreements: Disagreements,
@@ -65,14 +65,14 @@ pub struct Together {
 impl Together {
     /// Policies that decide together for so many steps.
     #[must_use]
-    pub fn new(combined: Combined, random: Random, steps: u64) -> Self {
+    pub(super) fn new(combined: Combined, random: Random, steps: u64) -> Self {
         let disagreements = Disagreements::new(&combined, steps);
         Self { combined, random, disagreements }
     }
 
     /// Where they disagreed.
     #[must_use]
-    pub(crate) fn into_disagreements(self) -> Disagreements {
+    pub(super) fn into_disagreements(self) -> Disagreements {
         self.disagreements
     }
 }
@@ -97,7 +97,7 @@ impl<F: FnMut(usize) -> usize> Chooser for ByState<F> {
 }
 
 /// One choice that was made before.
-pub struct Recorded(pub Choice);
+pub(super) struct Recorded(pub Choice);
 
 impl Chooser for Recorded {
     fn choose(&mut self, _: &[usize]) -> Result<Choice> {

@@ -98,7 +98,7 @@ impl<R: Robot> Cycle<R> {
     ///
     /// # Errors
     /// If the script fails.
-    pub(crate) fn swap_judge(&mut self, plan: &Plan) -> Result<()> {
+    pub(super) fn swap_judge(&mut self, plan: &Plan) -> Result<()> {
         self.judge = plan.judge()?;
         self.potential = 0.0;
         self.calibrate()

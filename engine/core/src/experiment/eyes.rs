@@ -15,7 +15,7 @@ pub struct Eyes {
 impl Eyes {
     /// Eyes of a chain and a grid for images of the same size, and of the map that makes states of what they see.
     #[must_use]
-    pub fn new(chain: Chain, grid: Grid, map: Box<dyn StateMap>) -> Self {
+    pub(super) fn new(chain: Chain, grid: Grid, map: Box<dyn StateMap>) -> Self {
         Self { chain, grid, map }
     }
 

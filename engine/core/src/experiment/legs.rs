@@ -50,7 +50,7 @@ impl Plan {
 
     /// Steps of all earlier legs.
     #[must_use]
-    pub(crate) fn earlier_steps(&self) -> u64 {
+    fn earlier_steps(&self) -> u64 {
         self.earlier.iter().map(|leg| leg.steps).sum()
     }
 

@@ -34,7 +34,8 @@ mod truth;
 mod untrained;
 
 pub use certainty::CertaintyGrid;
-pub use choosers::{ByState, Frozen, Learns, Recorded, Together};
+pub use choosers::{ByState, Frozen, Learns};
+use choosers::{Recorded, Together};
 pub use combination::Member;
 pub use cycle::Cycle;
 pub use disagreement::{CombinationFigures, Disagreement, DisagreementFigures, Disagreements, MemberFigures};

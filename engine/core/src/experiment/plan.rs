@@ -204,14 +204,14 @@ impl Plan {
     ///
     /// # Errors
     /// If an action has no counterpart that turns the other way, or the map has no sides.
-    pub fn mirror(&self, map: &dyn StateMap) -> Result<Option<Mirror>> {
+    pub(super) fn mirror(&self, map: &dyn StateMap) -> Result<Option<Mirror>> {
         self.parts().mirror(map)
     }
 
     /// What a learner is made for: the states of a map, the plan's actions, and the stream of a seed.
     ///
     /// # Errors
-    /// As [`Plan::mirror`].
+    /// If `learner.mirror` is set, and an action has no counterpart that turns the other way or the map has no sides.
     pub fn task(&self, map: &dyn StateMap, seed: u64) -> Result<Task> {
         Ok(Task {
             digits: map.digits(),

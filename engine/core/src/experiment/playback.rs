@@ -117,7 +117,7 @@ impl<'a, R: Robot> Playback<'a, R> {
 
     /// The records that are played.
     #[must_use]
-    pub fn ledger(&self) -> &'a Ledger {
+    pub(super) fn ledger(&self) -> &'a Ledger {
         self.ledger
     }
 

@@ -28,7 +28,7 @@ impl RunLog {
 
     /// An empty log with room for at most so many steps of each phase.
     #[must_use]
-    pub(crate) fn with_room(plan: &Plan, most: u64) -> Self {
+    fn with_room(plan: &Plan, most: u64) -> Self {
         let learning = Ledger::new(plan.first_leg(), if plan.learns() { plan.first_steps().min(most) } else { 0 });
         Self { learning, test: Ledger::new(plan, plan.settings.run.test_steps.min(most)) }
     }

@@ -4,7 +4,7 @@ use super::Step;
 use crate::outcome::Endings;
 use crate::verdict::{WINDOW_STEPS, Window, WindowCounts};
 
-/// WindowCounts over a whole run.
+/// Counts over a whole run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tally {
     /// All windows, first to last.
@@ -17,7 +17,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// WindowCounts for so many rules over so many steps; nothing is allocated later.
+    /// Counts for so many rules over so many steps; nothing is allocated later.
     #[must_use]
     pub fn new(rules: usize, steps: u64) -> Self {
         let windows = steps.div_ceil(WINDOW_STEPS).min(1 << 20) as usize;
@@ -25,8 +25,8 @@ impl Tally {
         Self { windows: Vec::with_capacity(windows), fired: vec![0; rules], by_rule, fired_by_rule }
     }
 
-    /// WindowCounts one step; true if it ended a window.
-    pub fn count(&mut self, step: &Step, fired: &[Option<f64>]) -> bool {
+    /// Counts one step; true if it ended a window.
+    pub(super) fn count(&mut self, step: &Step, fired: &[Option<f64>]) -> bool {
         if self.windows.last().is_none_or(|window| window.steps == WINDOW_STEPS) {
             self.windows.push(Window::default());
             self.by_rule.resize(self.windows.len() * self.fired.len(), 0.0);

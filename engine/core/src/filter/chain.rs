@@ -112,7 +112,7 @@ impl Chain {
 
     /// What its first filter likes best, colour or grey: the mask of an image in this format is that of its colours.
     #[must_use]
-    pub fn likes(&self) -> Format {
+    pub(crate) fn likes(&self) -> Format {
         self.stages.first().and_then(|stage| stage.descriptor.reads.first()).copied().unwrap_or(Format::Rgb)
     }
 

@@ -8,7 +8,6 @@ mod chain;
 mod conformance;
 #[cfg(any(feature = "native-filters", feature = "wasm"))]
 mod described;
-#[cfg(any(feature = "native-filters", feature = "wasm"))]
 mod entry;
 mod law;
 mod native;

@@ -51,14 +51,16 @@ impl Trust {
     }
 
     /// Whether a library with this digest may be loaded.
+    #[cfg(feature = "native-filters")]
     #[must_use]
-    pub fn allows(&self, digest: &Digest) -> bool {
+    pub(super) fn allows(&self, digest: &Digest) -> bool {
         self.allowed.contains(digest)
     }
 
     /// Whether no library at all may be loaded.
+    #[cfg(feature = "native-filters")]
     #[must_use]
-    pub fn is_empty(&self) -> bool {
+    pub(super) fn is_empty(&self) -> bool {
         self.allowed.is_empty()
     }
 }

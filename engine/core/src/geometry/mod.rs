@@ -6,7 +6,8 @@
 
 mod pose;
 
-pub use pose::{Pose, Twist, rotation, wrap_angle};
+pub(crate) use pose::rotation;
+pub use pose::{Pose, Twist, wrap_angle};
 
 /// A point of the floor plan, metres.
 pub type Point2 = nalgebra::Point2<f64>;
@@ -15,6 +16,6 @@ pub type Point3 = nalgebra::Point3<f64>;
 /// A direction or a displacement, metres.
 pub type Vector3 = nalgebra::Vector3<f64>;
 /// A rotation matrix.
-pub type Rotation3 = nalgebra::Rotation3<f64>;
+type Rotation3 = nalgebra::Rotation3<f64>;
 /// A rigid transform: `world_from_robot * point`.
 pub type Isometry3 = nalgebra::Isometry3<f64>;

@@ -63,7 +63,7 @@ impl Twist {
 ///
 /// Its sines come from `libm`, so that every machine computes the same matrix.
 #[must_use]
-pub fn rotation(yaw_rad: f64, pitch_rad: f64, roll_rad: f64) -> Rotation3 {
+pub(crate) fn rotation(yaw_rad: f64, pitch_rad: f64, roll_rad: f64) -> Rotation3 {
     let (sy, cy) = libm::sincos(yaw_rad);
     let (sp, cp) = libm::sincos(pitch_rad);
     let (sr, cr) = libm::sincos(roll_rad);

@@ -92,7 +92,7 @@ pub(crate) enum Beam {
 impl Unit {
     /// The unit in words; empty where there is none.
     #[must_use]
-    pub const fn words(self) -> &'static str {
+    pub(crate) const fn words(self) -> &'static str {
         match self {
             Self::Without => "",
             Self::Metres => "metres",

@@ -11,11 +11,11 @@ use super::facts::{decimal, greatest, least, mean};
 #[derive(Debug, Clone, Copy)]
 pub struct Fact {
     /// Which row it is.
-    pub id: FactId,
+    pub(crate) id: FactId,
     /// The group: `laser`; `sector` for what `laser.sector(from, to)` has.
     pub group: &'static str,
     /// The name within it: `nearest`; `[` for an index.
-    pub key: &'static str,
+    pub(crate) key: &'static str,
     /// The unit.
     pub unit: Unit,
     /// Between which values it lies.
@@ -25,7 +25,7 @@ pub struct Fact {
     /// Reads it.
     pub(crate) get: Getter,
     /// One sentence: what it is.
-    pub purpose: &'static str,
+    pub(crate) purpose: &'static str,
 }
 
 /// The groups of facts, with what each is about.

@@ -38,26 +38,26 @@ pub struct Facts {
 impl Facts {
     /// The range of one beam, metres; 0 if there is no such beam.
     #[must_use]
-    pub(crate) fn beam_m(&self, beam: usize) -> f64 {
+    pub(super) fn beam_m(&self, beam: usize) -> f64 {
         self.ranges_m.get(beam).map_or(0.0, |&range| decimal(range))
     }
 
     /// The ranges of the beams `from` to `to`, both included, metres; empty if there are no such beams.
     #[must_use]
-    pub(crate) fn sector_m(&self, from: usize, to: usize) -> &[f32] {
+    pub(super) fn sector_m(&self, from: usize, to: usize) -> &[f32] {
         self.ranges_m.get(from..=to).unwrap_or_default()
     }
 
     /// The beam with the least range, the rightmost of equals.
     #[must_use]
-    pub fn nearest_beam(&self) -> usize {
+    pub(crate) fn nearest_beam(&self) -> usize {
         let least = least(&self.ranges_m);
         self.ranges_m.iter().position(|&range| range == least).unwrap_or(0)
     }
 
     /// The share of foreground pixels of one grid cell, 0 to 1; 0 if there is no such cell.
     #[must_use]
-    pub fn cell(&self, row: usize, column: usize) -> f64 {
+    pub(super) fn cell(&self, row: usize, column: usize) -> f64 {
         let inside = column < self.grid.1;
         self.cells.get(row * self.grid.1 + column).filter(|_| inside).map_or(0.0, |&share| decimal(share))
     }

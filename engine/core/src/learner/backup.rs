@@ -6,7 +6,7 @@ use crate::saved::{Loading, Saving, Unfit};
 
 /// One step, as a table learns from it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Lesson {
+pub(super) struct Lesson {
     /// The state in which the action was chosen.
     pub state: usize,
     /// The action.
@@ -22,13 +22,13 @@ pub struct Lesson {
 impl Lesson {
     /// The TD target: reward plus the discounted value of what follows.
     #[must_use]
-    pub fn target(&self, discount: f64, next_value: f64) -> f64 {
+    pub(super) fn target(&self, discount: f64, next_value: f64) -> f64 {
         if self.terminal { self.reward } else { self.reward + discount * next_value }
     }
 }
 
 /// A way of learning.
-pub trait Backup: Send {
+pub(super) trait Backup: Send {
     /// Changes the table by one step.
     fn learn(&mut self, table: &mut QTable, lesson: &Lesson);
     /// Ends the memory of earlier steps, after learning what they still hold.

@@ -19,7 +19,7 @@ use crate::stats::Sorted;
 
 /// Two or more policies over the same actions, each with states of its own.
 #[derive(Debug, Clone)]
-pub struct Combined {
+pub(crate) struct Combined {
     /// By policy and state; `None` where the policy never met the state.
     members: Vec<Vec<Option<MemberRow>>>,
     by_priority: bool,
@@ -39,7 +39,7 @@ struct MemberRow {
 
 /// What the policies decided together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Decision {
+pub(crate) struct Decision {
     /// The action that was drawn.
     pub action: usize,
     /// The action with the greatest combined value; `None` if no policy that counts knows its state.
@@ -51,7 +51,7 @@ pub struct Decision {
 impl Combined {
     /// Combines policies in the order of their priority.
     #[must_use]
-    pub fn new(policies: &[&Policy], settings: &CombineSettings, learner: &LearnerSettings) -> Self {
+    pub(crate) fn new(policies: &[&Policy], settings: &CombineSettings, learner: &LearnerSettings) -> Self {
         let actions = policies.first().map_or(0, |policy| policy.actions());
         let by_priority = settings.way == CombineWay::Priority;
         let members = policies.iter().map(|policy| {
@@ -86,7 +86,7 @@ impl Combined {
     }
 
     /// Decides in the states that the policies perceive, one for each policy, in their order.
-    pub fn choose(&mut self, states: &[usize], random: &mut Random) -> Decision {
+    pub(crate) fn choose(&mut self, states: &[usize], random: &mut Random) -> Decision {
         for ((vote, member), state) in self.votes.iter_mut().zip(&self.members).zip(states) {
             *vote = known(member, *state).map(|row| row.best);
         }

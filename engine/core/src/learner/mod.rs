@@ -1,8 +1,8 @@
 //! From states, actions and rewards to values.
 //!
 //! [`Learner`] is the door: a step is [`Learner::choose`], then [`Learner::learn`]. The ways of learning that ship keep a
-//! table ([`TableLearner`]) and differ only in their [`Backup`]: what of the table a step changes. This room sees numbers
-//! only: never a frame, a world, a script or a clock.
+//! table ([`TableLearner`]) and differ only in what of it a step changes, each in a file of its own beside `backup.rs`. This
+//! room sees numbers only: never a frame, a world, a script or a clock.
 //!
 //! # Beyond the paper
 //! Options that are off by default and go with every way of learning: `mirror` (learn left for right too) and `replay`
@@ -55,14 +55,13 @@ mod ttd_cichosz;
 use crate::saved::{Loading, Saving, Unfit};
 use crate::settings::LearnerSettings;
 
-pub use backup::{Backup, Lesson};
 pub use carry::Carry;
-pub use combined::{Combined, Decision};
+pub(crate) use combined::{Combined, Decision};
 pub use mirror::Mirror;
 pub use policy::{Policy, PolicyRow};
-pub use q_table::QTable;
+use q_table::QTable;
 pub use shipped::{ShippedLearner, shipped_learner};
-pub use softmax::{Softmax, temperature};
+pub(crate) use softmax::Softmax;
 pub use table_learner::TableLearner;
 pub use task::{Task, Transition};
 

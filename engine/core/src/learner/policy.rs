@@ -60,7 +60,7 @@ impl Policy {
     }
 
     /// An action by softmax at the lowest temperature; any action, equally likely, in a state never visited.
-    pub fn choose(&self, state: usize, softmax: &mut Softmax, random: &mut Random) -> usize {
+    pub(crate) fn choose(&self, state: usize, softmax: &mut Softmax, random: &mut Random) -> usize {
         match self.rows.get(state) {
             Some(Some(row)) => softmax.choose(&row.values, u64::MAX, random),
             _ => random.below(self.actions as u32) as usize,
@@ -69,7 +69,7 @@ impl Policy {
 
     /// The softmax that fits this policy.
     #[must_use]
-    pub fn softmax(&self, settings: &LearnerSettings) -> Softmax {
+    pub(crate) fn softmax(&self, settings: &LearnerSettings) -> Softmax {
         Softmax::new(settings, self.actions)
     }
 }

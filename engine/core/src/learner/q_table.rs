@@ -2,7 +2,7 @@
 
 /// A value for each action in each state, and how often each state was visited.
 #[derive(Debug, Clone, PartialEq)]
-pub struct QTable {
+pub(super) struct QTable {
     actions: usize,
     values: Vec<f64>,
     visits: Vec<u64>,
@@ -11,54 +11,54 @@ pub struct QTable {
 impl QTable {
     /// A table filled with first values, state by state.
     #[must_use]
-    pub fn new(states: usize, actions: usize, mut initial: impl FnMut() -> f64) -> Self {
+    pub(super) fn new(states: usize, actions: usize, mut initial: impl FnMut() -> f64) -> Self {
         let values = (0..states * actions).map(|_| initial()).collect();
         Self { actions, values, visits: vec![0; states] }
     }
 
     /// How many states it has.
     #[must_use]
-    pub fn states(&self) -> usize {
+    pub(super) fn states(&self) -> usize {
         self.visits.len()
     }
 
     /// How many actions it has.
     #[must_use]
-    pub const fn actions(&self) -> usize {
+    pub(super) const fn actions(&self) -> usize {
         self.actions
     }
 
     /// The values of a state's actions.
     #[must_use]
-    pub fn row(&self, state: usize) -> &[f64] {
+    pub(super) fn row(&self, state: usize) -> &[f64] {
         &self.values[state * self.actions..(state + 1) * self.actions]
     }
 
     /// All values, state by state.
     #[must_use]
-    pub fn values(&self) -> &[f64] {
+    pub(super) fn values(&self) -> &[f64] {
         &self.values
     }
 
     /// The value of one action in one state.
     #[must_use]
-    pub fn value(&self, state: usize, action: usize) -> f64 {
+    pub(super) fn value(&self, state: usize, action: usize) -> f64 {
         self.values[state * self.actions + action]
     }
 
     /// Adds to the value of one action in one state.
-    pub fn add(&mut self, state: usize, action: usize, amount: f64) {
+    pub(super) fn add(&mut self, state: usize, action: usize, amount: f64) {
         self.values[state * self.actions + action] += amount;
     }
 
     /// The best action of a state and its value; the first of equals.
     #[must_use]
-    pub fn best(&self, state: usize) -> (usize, f64) {
+    pub(super) fn best(&self, state: usize) -> (usize, f64) {
         best_of(self.row(state))
     }
 
     /// Counts a visit of a state and tells how many there were before.
-    pub fn visit(&mut self, state: usize) -> u64 {
+    pub(super) fn visit(&mut self, state: usize) -> u64 {
         let before = self.visits[state];
         self.visits[state] += 1;
         before
@@ -70,14 +70,14 @@ impl QTable {
     }
 
     /// Halves what is known: every value, and the visits of each state, of which no more than `most` count.
-    pub(crate) fn halve(&mut self, most: u64) {
+    pub(super) fn halve(&mut self, most: u64) {
         self.values.iter_mut().for_each(|value| *value *= 0.5);
         self.visits.iter_mut().for_each(|visits| *visits = (*visits).min(most) / 2);
     }
 
     /// How often each state was visited.
     #[must_use]
-    pub fn visits(&self) -> &[u64] {
+    pub(super) fn visits(&self) -> &[u64] {
         &self.visits
     }
 }

@@ -6,7 +6,7 @@ use crate::settings::LearnerSettings;
 
 /// Chooses actions; keeps scratch memory so that choosing allocates nothing.
 #[derive(Debug, Clone)]
-pub struct Softmax {
+pub(crate) struct Softmax {
     start: f64,
     end: f64,
     cooling_visits: u64,
@@ -16,7 +16,7 @@ pub struct Softmax {
 impl Softmax {
     /// A choice among `actions` with the settings' temperatures.
     #[must_use]
-    pub fn new(settings: &LearnerSettings, actions: usize) -> Self {
+    pub(super) fn new(settings: &LearnerSettings, actions: usize) -> Self {
         Self {
             start: settings.temperature,
             end: settings.temperature_end,
@@ -26,7 +26,7 @@ impl Softmax {
     }
 
     /// An index into `values`, drawn with the probabilities of equation (3) in a state that had `visits` visits.
-    pub fn choose(&mut self, values: &[f64], visits: u64, random: &mut Random) -> usize {
+    pub(super) fn choose(&mut self, values: &[f64], visits: u64, random: &mut Random) -> usize {
         let total = self.weigh(values, temperature(self.start, self.end, self.cooling_visits, visits));
         let mut left = random.unit() * total;
         for (action, weight) in self.weights.iter().enumerate() {
@@ -55,7 +55,7 @@ impl Softmax {
 
 /// Equation (4): `start * exp(-(visits / cooling_visits) * ln(start / end))`, and `end` from then on.
 #[must_use]
-pub fn temperature(start: f64, end: f64, cooling_visits: u64, visits: u64) -> f64 {
+fn temperature(start: f64, end: f64, cooling_visits: u64, visits: u64) -> f64 {
     if visits >= cooling_visits {
         return end;
     }

@@ -24,18 +24,12 @@ impl TableLearner {
     /// A learner that knows nothing yet: first values uniform in the settings' range. With a mirror, it learns the mirror
     /// image of every step too, and a visit of a state is one of its image as well.
     #[must_use]
-    pub fn new(settings: &LearnerSettings, task: Task) -> Self {
+    pub(super) fn new(settings: &LearnerSettings, task: Task) -> Self {
         let Task { states, actions, mirror, mut random, .. } = task;
         let table = first_table(settings, states, actions.len(), &mut random);
         let softmax = Softmax::new(settings, actions.len());
         let failure_is_terminal = settings.failure_is_terminal;
         Self { table, softmax, backup: backup(settings, mirror.as_ref()), mirror, failure_is_terminal, random }
-    }
-
-    /// The values as they are.
-    #[must_use]
-    pub fn table(&self) -> &QTable {
-        &self.table
     }
 
     fn count_visit(&mut self, state: usize) -> u64 {
@@ -185,7 +179,7 @@ mod tests {
         for kind in LearnerKind::ALL {
             let mut learner = TableLearner::new(&Walk::settings(*kind), task(5, 2, 3));
             Walk { state: 2 }.go(&mut learner, 20_000);
-            let greedy: Vec<usize> = (0..4).map(|state| learner.table().best(state).0).collect();
+            let greedy: Vec<usize> = (0..4).map(|state| learner.table.best(state).0).collect();
             assert_eq!(greedy, [1, 1, 1, 1], "{kind:?}");
         }
     }
@@ -211,7 +205,7 @@ mod tests {
             again.load(&mut Loading::new(&bytes)).unwrap();
             Walk { state: walk.state }.go(&mut again, 200);
             walk.go(&mut learner, 200);
-            assert_eq!(again.table(), learner.table(), "{kind:?}, replay {replay}, mirrored {mirrored}");
+            assert_eq!(again.table, learner.table, "{kind:?}, replay {replay}, mirrored {mirrored}");
             assert!(made(3).load(&mut Loading::new(&bytes[..bytes.len() - 8])).is_err());
             assert!(TableLearner::new(&settings, task(6, 2, 3)).load(&mut Loading::new(&bytes)).is_err());
         }
@@ -225,7 +219,7 @@ mod tests {
         let mut learner = TableLearner::new(&settings, Task { mirror, ..task(3, 2, 1) });
         learner.choose(0);
         learner.choose(2);
-        assert_eq!(learner.table().visits(), [1, 1, 1]);
+        assert_eq!(learner.table.visits(), [1, 1, 1]);
     }
 
     #[test]
@@ -270,6 +264,6 @@ mod tests {
             learner.learn(&step(state, 0, f64::from(u8::from(state == 2)), next_state));
         }
         let wanted = 0.81 / (1.0 - 0.729);
-        assert!((learner.table().row(0)[0] - wanted).abs() < 1e-9);
+        assert!((learner.table.row(0)[0] - wanted).abs() < 1e-9);
     }
 }

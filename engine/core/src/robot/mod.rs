@@ -10,7 +10,7 @@ use crate::diagnostic::Result;
 use crate::geometry::{Pose, Twist};
 use crate::sensors::observation::{Image, Observation};
 
-pub use recovery::Recovery;
+use recovery::Recovery;
 pub use simulated::SimulatedRobot;
 
 /// What the step loop needs of a robot.

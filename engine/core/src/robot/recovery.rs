@@ -13,7 +13,7 @@ const SPACING_M: f64 = 0.5;
 
 /// Draws safe poses.
 #[derive(Debug, Clone)]
-pub struct Recovery {
+pub(super) struct Recovery {
     settings: RecoverySettings,
     random: Random,
 }
@@ -21,7 +21,7 @@ pub struct Recovery {
 impl Recovery {
     /// Recovery under a run's seed.
     #[must_use]
-    pub fn new(settings: &RecoverySettings, seed: u64) -> Self {
+    pub(super) fn new(settings: &RecoverySettings, seed: u64) -> Self {
         Self { settings: settings.clone(), random: Random::new(seed, Stream::Recovery) }
     }
 
@@ -30,7 +30,7 @@ impl Recovery {
     /// # Errors
     /// `E-RECOVERY-ROUTE` or `E-RECOVERY-MOVER` if the world has no lap route or no mover to recover to;
     /// `E-RECOVERY-BLOCKED` if every pose that may be used is blocked or has no ground under it.
-    pub fn pose(&mut self, world: &World) -> Result<Pose> {
+    pub(super) fn pose(&mut self, world: &World) -> Result<Pose> {
         for _ in 0..DRAWS {
             let base = self.base(world)?;
             let pose = self.shifted(base);

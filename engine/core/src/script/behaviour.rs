@@ -125,7 +125,7 @@ impl Behaviour {
     ///
     /// # Errors
     /// If a rule names a beam that a laser with `beams` beams does not have.
-    pub fn judge(&self, period_s: f64, beams: usize) -> Result<Judge> {
+    pub(crate) fn judge(&self, period_s: f64, beams: usize) -> Result<Judge> {
         self.compiled.check_beams(beams)?;
         Ok(self.unchecked_judge(period_s, beams))
     }

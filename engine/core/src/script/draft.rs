@@ -22,7 +22,7 @@ use std::path::Path;
 
 /// A script as far as it is understood. What a mistake keeps from being understood is not in it.
 #[derive(Debug)]
-pub struct Draft {
+pub(crate) struct Draft {
     /// What is understood; to be learned only if there is no mistake.
     pub behaviour: Behaviour,
     /// All that is wrong.
@@ -36,7 +36,7 @@ impl Draft {
     ///
     /// # Errors
     /// If nothing can be understood after a mistake: the file cannot be read as a script, or a limit stopped it.
-    pub fn load(path: &Path) -> Result<Self> {
+    pub(crate) fn load(path: &Path) -> Result<Self> {
         let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
         Self::read(&name, source::read(path)?)
     }
@@ -45,7 +45,7 @@ impl Draft {
     ///
     /// # Errors
     /// As [`Draft::load`].
-    pub fn read(name: &str, source: SourceText) -> Result<Self> {
+    fn read(name: &str, source: SourceText) -> Result<Self> {
         let code = source::check_text(source)?;
         let mut mistakes = Mistakes::new(&code.source);
         match Self::understood(name, &code, &mut mistakes) {
@@ -58,7 +58,7 @@ impl Draft {
     ///
     /// # Errors
     /// If there is a mistake.
-    pub fn end(self) -> Result<Behaviour> {
+    fn end(self) -> Result<Behaviour> {
         self.mistakes.end().map(|()| self.behaviour)
     }
 

@@ -1,8 +1,8 @@
 //! The language of scripts: from a script's text to what can be judged, with all that is wrong in it.
 //!
 //! A script sets up, names rules over facts, and may have functions. [`Behaviour`] is a script that has been loaded and
-//! checked; [`Draft`] is one as far as it can be understood, with its mistakes, and the order of the stages. What is
-//! judged in every step, and how, is the room `judge`.
+//! checked; the file `draft.rs` has one as far as it can be understood, with its mistakes, and the order of the stages.
+//! What is judged in every step, and how, is the room `judge`.
 
 mod access;
 mod behaviour;
@@ -31,10 +31,10 @@ mod unknown;
 mod unread;
 
 pub use behaviour::Behaviour;
-pub use draft::Draft;
+pub(crate) use draft::Draft;
 pub use outline::{BeamLoop, Compared, Condition, Gathers, NamedFact, RuleOutline, ScriptOutline, UnusedName};
 pub use reference::{definitions, reference};
-pub use unread::Unread;
+pub(crate) use unread::Unread;
 
 #[cfg(test)]
 mod tests;

@@ -97,7 +97,7 @@ pub struct ScriptOutline {
     /// The rules in their order.
     pub rules: Vec<RuleOutline>,
     /// Comparisons in functions.
-    pub comparisons: Vec<Compared>,
+    pub(super) comparisons: Vec<Compared>,
     /// Loops over beams in `fn reward` and what it calls.
     pub loops: Vec<BeamLoop>,
     /// The groups of facts that rules and `fn reward` read, in the order of the alphabet.
@@ -105,7 +105,7 @@ pub struct ScriptOutline {
     /// Where the name of `fn reward` stands.
     pub reward: Option<Range<usize>>,
     /// Whether `fn reward` can ask for recovery.
-    pub reward_recovers: bool,
+    pub(super) reward_recovers: bool,
     /// Names that nothing uses.
     pub unused: Vec<UnusedName>,
 }
@@ -126,7 +126,7 @@ impl ScriptOutline {
 impl Condition {
     /// The comparisons in it.
     #[must_use]
-    pub(crate) fn comparisons(&self) -> Vec<&Compared> {
+    pub(super) fn comparisons(&self) -> Vec<&Compared> {
         match self {
             Self::Compare(compared) => vec![compared],
             Self::All(parts) | Self::Any(parts) => parts.iter().flat_map(Self::comparisons).collect(),

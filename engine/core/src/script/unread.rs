@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 
 /// Settings that are written and could not be read; they have their defaults.
 #[derive(Debug, Clone, Default)]
-pub struct Unread(BTreeSet<(String, String)>);
+pub(crate) struct Unread(BTreeSet<(String, String)>);
 
 impl Unread {
     /// All that one set-up call sets.
@@ -34,7 +34,7 @@ impl Unread {
 
     /// Whether one setting is not read, or may not be.
     #[must_use]
-    pub fn has(&self, group: &str, key: &str) -> bool {
+    pub(crate) fn has(&self, group: &str, key: &str) -> bool {
         self.0.iter().any(|(known, of)| known == group && (of.is_empty() || of == key))
     }
 }

@@ -108,7 +108,7 @@ impl Camera {
 
     /// How many frames were rendered: with the seed, the address of the next frame's noise.
     #[must_use]
-    pub fn frames(&self) -> u64 {
+    pub(crate) fn frames(&self) -> u64 {
         self.frame
     }
 

@@ -65,7 +65,7 @@ impl BodyShape {
 
     /// Radius of a circle around the origin that holds the whole footprint, rounded up to a millimetre, metres.
     #[must_use]
-    pub fn radius_m(&self) -> f64 {
+    pub(crate) fn radius_m(&self) -> f64 {
         let radius_m = match self.footprint {
             Footprint::Rectangle { length_m, width_m, ahead_m } => {
                 let (x, y) = (0.5 * length_m + ahead_m.abs(), 0.5 * width_m);

@@ -165,7 +165,7 @@ pub struct CombineSettings {
 }
 
 /// Table 2 of the paper: forward speed in m/s, turning speed in rad/s.
-pub const PAPER_ACTIONS: [(f64, f64); 14] = [
+const PAPER_ACTIONS: [(f64, f64); 14] = [
     (0.4, 0.2),
     (0.4, 0.0),
     (0.4, -0.2),

@@ -159,7 +159,7 @@ impl Grid {
 
     /// The state of the mirror image, left for right.
     #[must_use]
-    pub(crate) fn mirrored(&self, state: usize) -> usize {
+    pub(super) fn mirrored(&self, state: usize) -> usize {
         let base = if self.fill { self.rows + 1 } else { 2 };
         let digits = if self.fill { 1 } else { self.rows };
         let line = base.pow(self.columns as u32);

@@ -7,13 +7,13 @@ use serde::{Deserialize, Serialize};
 pub struct SuccessVerdict {
     /// Null where it cannot be told.
     pub success: Option<bool>,
-    /// Because.
+    /// Why.
     pub why: Because,
     /// Every condition, with its figures.
     pub conditions: Vec<ConditionVerdict>,
 }
 
-/// Because a verdict is what it is.
+/// Why a verdict is what it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Because {

@@ -2,7 +2,7 @@
 
 use crate::outcome::Endings;
 
-/// Steps in a window: each point of the paper's TestFigure 3 is the reinforcement of the last 400 steps.
+/// Steps in a window: each point of the paper's Figure 3 is the reinforcement of the last 400 steps.
 pub const WINDOW_STEPS: u64 = 400;
 
 /// One window.

@@ -23,7 +23,7 @@ pub use body::{Body, Motion};
 pub use layout::Layout;
 pub use mover::Mover;
 pub use route::Route;
-pub use route_progress::RouteProgress;
+pub(crate) use route_progress::RouteProgress;
 
 use crate::geometry::{Pose, Twist};
 use crate::random::{Random, Stream};
@@ -170,7 +170,7 @@ impl World {
 
     /// The route of the first mover, and how far along it the mover is now, metres.
     #[must_use]
-    pub fn prey_route(&self) -> Option<(&Route, f64)> {
+    pub(crate) fn prey_route(&self) -> Option<(&Route, f64)> {
         let mover = self.layout.movers.first()?;
         let route = self.layout.routes.get(mover.route)?;
         Some((route, mover.along_m(route, self.mover_time_s())))

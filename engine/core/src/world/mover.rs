@@ -10,11 +10,11 @@ pub struct Mover {
     /// The name in the world file.
     pub name: String,
     /// Index of its route among the layout's.
-    pub route: usize,
+    pub(super) route: usize,
     /// Speed along the route, m/s.
-    pub speed_m_per_s: f64,
+    pub(super) speed_m_per_s: f64,
     /// Where on the route it is at time 0, metres from the route's beginning.
-    pub offset_m: f64,
+    pub(super) offset_m: f64,
     /// Its solids in its own axes: x forward, the origin on the floor at the place on the route.
     pub solids: Vec<Solid>,
 }
@@ -28,7 +28,7 @@ impl Mover {
 
     /// How far along its route it is at a time, metres; more than the length after the first lap.
     #[must_use]
-    pub(crate) fn along_m(&self, route: &Route, time_s: f64) -> f64 {
+    pub(super) fn along_m(&self, route: &Route, time_s: f64) -> f64 {
         let along_m = self.offset_m + self.speed_m_per_s * time_s;
         if route.closed { along_m } else { along_m.min(route.length_m()) }
     }

@@ -35,7 +35,7 @@ struct Segment {
 impl Route {
     /// A route through `points`, of which there must be at least two, none equal to the one before it.
     #[must_use]
-    pub fn new(name: impl Into<String>, points: Vec<Point2>, closed: bool) -> Self {
+    pub(super) fn new(name: impl Into<String>, points: Vec<Point2>, closed: bool) -> Self {
         let mut segments: Vec<Segment> = Vec::with_capacity(points.len());
         let mut length_m = 0.0;
         let ends = points.iter().skip(1).chain(points.first().filter(|_| closed));
@@ -57,13 +57,13 @@ impl Route {
 
     /// The length, metres; of a closed route, that of one lap.
     #[must_use]
-    pub fn length_m(&self) -> f64 {
+    pub(crate) fn length_m(&self) -> f64 {
         self.length_m
     }
 
     /// The place and heading `along_m` metres from the beginning. A closed route repeats; an open one ends.
     #[must_use]
-    pub fn pose_at(&self, along_m: f64) -> Pose {
+    pub(crate) fn pose_at(&self, along_m: f64) -> Pose {
         let along_m = if self.closed {
             along_m - self.length_m * (along_m / self.length_m).floor()
         } else {
@@ -78,7 +78,7 @@ impl Route {
 
     /// The nearest place of the route: its distance along the route and its distance from `point`, both metres.
     #[must_use]
-    pub fn nearest(&self, point: Point2) -> (f64, f64) {
+    pub(crate) fn nearest(&self, point: Point2) -> (f64, f64) {
         self.nearest_between(point, 0.0, self.length_m)
     }
 

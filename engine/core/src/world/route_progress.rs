@@ -10,7 +10,7 @@ const MOST_PER_METRE: f64 = 1.2;
 
 /// Signed, unwrapped distance along one route. Driving back counts down; driving round it twice counts two laps.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RouteProgress {
+pub(crate) struct RouteProgress {
     at: Point2,
     along_m: f64,
     offset_m: f64,
@@ -23,7 +23,7 @@ pub struct RouteProgress {
 impl RouteProgress {
     /// No progress yet, beginning at the place of the route nearest to `at`.
     #[must_use]
-    pub fn new(route: &Route, at: Point2) -> Self {
+    pub(crate) fn new(route: &Route, at: Point2) -> Self {
         let mut progress = Self { at, along_m: 0.0, offset_m: 0.0, is_on: false, gone_m: 0.0, driven_m: 0.0 };
         progress.jump(route, at);
         progress
@@ -33,7 +33,7 @@ impl RouteProgress {
     ///
     /// The nearest place is followed, not sought anew, so that branches side by side do not mix. Off the route nothing counts:
     /// far from it the nearest place runs much faster than the robot, and a circle in the middle of a room would be a lap.
-    pub fn update(&mut self, route: &Route, at: Point2) {
+    pub(crate) fn update(&mut self, route: &Route, at: Point2) {
         let moved_m = (at - self.at).norm();
         let reach_m = (REACH_M + 2.0 * moved_m).min(0.49 * route.length_m());
         let (along_m, offset_m) = route.nearest_between(at, self.along_m - reach_m, self.along_m + reach_m);
@@ -48,14 +48,14 @@ impl RouteProgress {
 
     /// Progress so far, metres; negative if it is against the route's direction. At most a fifth more than was driven on it.
     #[must_use]
-    pub fn net_m(&self) -> f64 {
+    pub(crate) fn net_m(&self) -> f64 {
         let most_m = MOST_PER_METRE * self.driven_m;
         self.gone_m.clamp(-most_m, most_m)
     }
 
     /// Distance from the route, metres.
     #[must_use]
-    pub fn offset_m(&self) -> f64 {
+    pub(crate) fn offset_m(&self) -> f64 {
         self.offset_m
     }
 
@@ -66,7 +66,7 @@ impl RouteProgress {
     }
 
     /// Goes on from the place nearest to `at` without counting the way there: the robot was put there, or has left the route.
-    pub fn jump(&mut self, route: &Route, at: Point2) {
+    pub(crate) fn jump(&mut self, route: &Route, at: Point2) {
         (self.along_m, self.offset_m) = route.nearest(at);
         (self.at, self.is_on) = (at, self.offset_m <= route.half_width_m);
     }

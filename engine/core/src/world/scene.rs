@@ -102,7 +102,7 @@ pub struct Light {
 impl Light {
     /// Brightness of a surface with the unit normal `normal`: gain * (ambient + (1 - ambient) * max(0, cos)).
     #[must_use]
-    pub fn on(&self, normal: &Vector3) -> f64 {
+    pub(crate) fn on(&self, normal: &Vector3) -> f64 {
         self.gain * (self.ambient + (1.0 - self.ambient) * self.towards.dot(normal).max(0.0))
     }
 }
@@ -172,7 +172,7 @@ impl Scene {
     ///
     /// `keep` gets the least and greatest corner of a box with the world's axes, metres. The order is that of the
     /// hierarchy: the same in every run, but not sorted.
-    pub fn visit(&self, mut keep: impl FnMut([f32; 3], [f32; 3]) -> bool, mut each: impl FnMut(usize)) {
+    pub(crate) fn visit(&self, mut keep: impl FnMut([f32; 3], [f32; 3]) -> bool, mut each: impl FnMut(usize)) {
         self.hierarchy.traverse(|node| {
             if !keep(node.mins().to_array(), node.maxs().to_array()) {
                 return TraversalAction::Prune;

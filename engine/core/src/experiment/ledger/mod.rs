@@ -90,7 +90,7 @@ impl Ledger {
     }
 
     /// From here on under another script, with room for `steps` more steps; none if the leg before was too long to be kept.
-    pub(crate) fn begin_leg(&mut self, plan: &Plan, steps: u64) {
+    pub(super) fn begin_leg(&mut self, plan: &Plan, steps: u64) {
         let shape = RecordShape::of(plan);
         let records = self.bytes.len() / self.shape.bytes();
         let is_whole = records as u64 == self.steps;

@@ -73,7 +73,7 @@ pub struct RecordShape {
 impl RecordShape {
     /// The shape for rules with these fixed values.
     #[must_use]
-    pub fn new(values: Vec<Option<f64>>) -> Self {
+    pub(super) fn new(values: Vec<Option<f64>>) -> Self {
         Self { values }
     }
 

@@ -115,7 +115,7 @@ fn noise_has_its_deviation_and_other_scans_have_other_noise() {
     let before = scan.clone();
     laser.scan(&Isometry3::identity(), &[], &mut scan);
     assert_ne!(before, scan);
-    laser.set_scans(laser.scans() - 2);
+    laser.set_scans(499);
     laser.scan(&Isometry3::identity(), &[], &mut scan);
     assert_eq!(before, scan);
 }

@@ -56,7 +56,7 @@ impl Layout {
     /// How far above the floor a body can stand while it stands level, metres: 0 without platforms, infinite where
     /// ramps or kerbs can tip it.
     #[must_use]
-    pub fn level_height_m(&self, body: &BodyShape) -> f64 {
+    pub(crate) fn level_height_m(&self, body: &BodyShape) -> f64 {
         self.terrain.level_height_m(body)
     }
 
