@@ -1,5 +1,6 @@
 //! What a script calls a goal or a success, and whoever meets it without doing anything.
 
+use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
 use super::exploit::cheats;
@@ -41,7 +42,7 @@ pub(super) fn check_values(plan: &Plan, trial: &LintTrial, findings: &mut Vec<Fi
         let (None, Some(span)) = (plan.behaviour.fixed_value(index), span) else { continue };
         let rule = &trial.rules[index];
         let same = rule.values.filter(|(least, greatest)| rule.fired >= ENOUGH && least == greatest);
-        let Some((value, _)) = same else { continue };
+        let Some((value, _)) = same.filter(|_| !is_switched_off(plan, &span)) else { continue };
         let what = if index == outline.rules.len() {
             "'fn reward'".to_owned()
         } else {
@@ -51,6 +52,18 @@ pub(super) fn check_values(plan: &Plan, trial: &LintTrial, findings: &mut Vec<Fi
         let help = "look for a min and a max that are exchanged, or for a limit that is never passed";
         findings.push(Finding::warning(plan, "W-VALUE-CONSTANT", span, message).say("always the same", help));
     }
+}
+
+/// Whether a value is multiplied with a constant that its author has set to 0.
+fn is_switched_off(plan: &Plan, span: &Range<usize>) -> bool {
+    let text = &plan.behaviour.source().text;
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    let is_zero = |word: &str| {
+        text.split(&format!("const {word} =")).nth(1).is_some_and(|value| {
+            value.split(';').next().is_some_and(|value| value.trim().parse::<f64>().is_ok_and(|value| value == 0.0))
+        })
+    };
+    text[span.clone()].split(|c| !is_word(c)).any(|word| !word.is_empty() && is_zero(word))
 }
 
 /// A success of the script's own that a robot meets which knows nothing, or which does not look.
