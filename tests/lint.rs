@@ -110,3 +110,14 @@ fn a_script_that_fails_in_a_step_is_an_error_in_its_line() {
     assert_eq!((first.code, first.line), ("E-SCRIPT-RUN", 4));
     assert!(report.exploits.is_none());
 }
+
+#[test]
+fn a_script_that_fails_in_the_first_step_is_told_so_and_nothing_that_only_follows_from_it() {
+    let bench = Bench::new();
+    bench.write("modulo.rhai", "world(\"small\"); rule \"a\" when time.step % 0 == 0 => -0.1;");
+    let told = bench.engine(&["check", "modulo.rhai"]);
+    let text = [told.stdout, told.stderr].concat();
+    let text = String::from_utf8_lossy(&text).into_owned();
+    assert!(text.contains("E-SCRIPT-RUN") && text.contains("1 error, 0 warnings"), "{text}");
+    assert!(!text.lines().any(|line| line.trim() == "= help:"), "{text}");
+}

@@ -17,7 +17,10 @@ pub fn headline(verdict: &SuccessVerdict) -> String {
     };
     match verdict.why {
         Because::Holds => "yes".to_owned(),
-        Because::Fails => format!("no: {} does not hold", names(false)),
+        Because::Fails => {
+            let several = verdict.conditions.iter().filter(|condition| !condition.holds).count() > 1;
+            format!("no: {} {} not hold", names(false), if several { "do" } else { "does" })
+        }
         Because::UntrainedToo => {
             "cannot be told: a robot that knows nothing meets every condition too; ask for what it must do".to_owned()
         }

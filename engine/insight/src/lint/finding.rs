@@ -55,7 +55,8 @@ impl Finding {
     /// For a terminal: the line with its caret.
     #[must_use]
     pub fn diagnostic(&self, plan: &Plan) -> Diagnostic {
-        let diagnostic = Diagnostic::new(self.code, self.message.clone()).help(self.help.clone());
-        diagnostic.at(plan.behaviour.source(), self.span.clone(), self.label.clone())
+        let diagnostic = Diagnostic::new(self.code, self.message.clone());
+        let diagnostic = diagnostic.at(plan.behaviour.source(), self.span.clone(), self.label.clone());
+        if self.help.is_empty() { diagnostic } else { diagnostic.help(self.help.clone()) }
     }
 }

@@ -96,7 +96,11 @@ fn look(plan: &Plan, threads: usize, stop: &AtomicBool) -> Result<Report> {
                 exploits = Some(found);
             }
             // The script's own mistake is a finding like others; what a limit stopped is not.
-            Err(fault) if fault.kind() == Kind::Input => findings.push(Finding::of_error(plan, &fault)),
+            Err(fault) if fault.kind() == Kind::Input => {
+                // A reward that fails depends on nothing, and that is not what is wrong with it.
+                findings.retain(|finding| finding.code != "W-NO-CHOICE");
+                findings.push(Finding::of_error(plan, &fault));
+            }
             Err(fault) => return Err(fault),
         }
     }

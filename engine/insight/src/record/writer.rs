@@ -181,7 +181,7 @@ impl Tape {
             "angular_rad_per_s": twist.angular_rad_per_s,
             "reward": step.reward,
             "rules": by_rule,
-            "recover": step.recover,
+            "recover": step.then.is_some(),
             "contact": step.contact,
         });
         self.steps.log_with_meta(message.to_string().as_bytes(), self.now().0);
