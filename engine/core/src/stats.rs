@@ -45,7 +45,7 @@ impl Sorted {
     ///
     /// It may differ from [`Sorted::quantile`] at 0.5 in the last bit.
     #[must_use]
-    pub(crate) fn midpoint_median(&self) -> Option<f64> {
+    pub fn midpoint_median(&self) -> Option<f64> {
         let last = self.0.len().checked_sub(1)?;
         Some(f64::midpoint(*self.0.get(last / 2)?, *self.0.get(last.div_ceil(2))?))
     }
