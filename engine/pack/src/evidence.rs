@@ -28,7 +28,7 @@ pub struct Evidence {
     pub engine: String,
     /// What that engine does in a short run of its own: [`fingerprint`].
     pub behaves: Digest,
-    /// Which definition the figures have: see [`FIGURES`].
+    /// Which definition the figures have; 1 if the evidence does not say.
     #[serde(default = "first_figures")]
     pub figures: u32,
     /// Steps of learning of each seed; 0 for a behaviour that combines policies.
