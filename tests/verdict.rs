@@ -185,3 +185,40 @@ fn a_goal_is_a_goal_whatever_it_pays_and_a_failure_a_failure() {
     assert_eq!(figures.goal_rate, fired(0) as f64 / (fired(0) + fired(1)) as f64);
     assert_eq!(figures.goal_s, Some(50.0 * plan.settings.run.period_s));
 }
+
+#[test]
+fn the_gap_to_a_mover_is_measured_where_a_success_asks_for_it() {
+    let script = |success: &str| {
+        format!(
+            "world(\"object\"); filter(\"colour\"); actions([[0, 0], [0.2, 0]]); recovery(\"behind\", #{{ distance_m: 1.1 }});
+             run(#{{ period_s: 0.33 }}); rule \"hit\" when robot.contact => -1 then fail; success \"near\" when {success};"
+        )
+    };
+    let plan = written(&script(
+        "test.gap_m(\"prey\") < 1.0 && test.gap_error_m(\"prey\", 0.5) < 1.0 && test.floor_covered > 0.1",
+    ));
+    let stands = test_choices(&plan, 7, &AtomicBool::new(false), &mut Blind(|_| 0, 0), &mut ()).unwrap().figures;
+    let [gap, error, covered] = stands.asked.as_slice() else { panic!("{:?}", stands.asked) };
+    assert_eq!((gap.name.as_str(), error.name.as_str()), ("gap_m(\"prey\")", "gap_error_m(\"prey\", 0.5)"));
+    // The prey drives round and round a robot that stands: from centre to centre it is as far as the gap and two half bodies.
+    let (gap_m, centres_m) = (gap.value.unwrap(), stands.prey_distance_m.unwrap());
+    assert!(gap_m < centres_m - 0.45 && gap_m > centres_m - 0.7, "{gap_m} {centres_m}");
+    assert!(error.value.unwrap() > 0.5 && covered.value.unwrap() < 0.01, "{:?}", stands.asked);
+    // Without the question, nothing is measured.
+    let plan = written(&script("test.contacts_per_1000 < 1.0"));
+    assert!(test_untrained(&plan, 7, &AtomicBool::new(false)).unwrap().asked.is_empty());
+}
+
+#[test]
+fn a_success_over_what_the_world_does_not_have_is_a_mistake() {
+    let refused = |success: &str| {
+        let text = format!(
+            "world(\"object\"); rule \"hit\" when robot.contact => -1 then fail; success \"near\" when {success};"
+        );
+        let behaviour = Behaviour::parse("own", SourceText::new(root().join("scripts/own.rhai"), text)).unwrap();
+        *Plan::new(Arc::new(behaviour), &Overrides::default()).map(|_| ()).unwrap_err()
+    };
+    let wrong = refused("test.contacts_with(\"pray\") < 2.0");
+    assert_eq!((wrong.code, wrong.message.as_str()), ("E-SCRIPT-SUCCESS", "this world has no mover \"pray\""));
+    assert_eq!(wrong.help.as_deref(), Some("did you mean \"prey\"?"));
+}

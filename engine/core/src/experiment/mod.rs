@@ -18,6 +18,7 @@ mod outlook;
 mod parts;
 mod plan;
 mod playback;
+mod probes;
 mod reasons;
 mod rescore;
 mod run_log;

@@ -11,11 +11,11 @@ use crate::judge::Judge;
 use crate::learner::{Mirror, Task};
 use crate::random::{Random, Stream};
 use crate::robot::SimulatedRobot;
-use crate::script::{Behaviour, Draft, Unread};
+use crate::script::{Behaviour, Draft, Measurable, Unread};
 use crate::settings::{SETTINGS, Settings, Value, apply};
 use crate::state::{Grid, GridMap, StateMap};
 use crate::verdict::Success;
-use crate::world::Layout;
+use crate::world::{FloorSquares, Layout};
 
 /// What the command line changes.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -151,9 +151,9 @@ impl Plan {
             let height_m = plan.layout.level_height_m(&plan.settings.robot.body);
             plan.behaviour.find_unreachable(&plan.settings.laser, height_m, &mut mistakes);
         }
-        if plan.layout.lap.is_none() {
-            plan.behaviour.find_unmeasurable(&mut mistakes);
-        }
+        let movers: Vec<&str> = plan.layout.movers.iter().map(|mover| mover.name.as_str()).collect();
+        let (has_route, has_squares) = (plan.layout.lap.is_some(), FloorSquares::fit(&plan.layout));
+        plan.behaviour.find_unmeasurable(&Measurable { has_route, movers: &movers, has_squares }, &mut mistakes);
         let robot = ["camera", "laser", "movers", "recovery", "robot", "run"];
         if !robot.iter().any(|call| unread.any_of(call))
             && mistakes.take(SimulatedRobot::new(&plan.layout, &plan.settings, 0)).is_some()

@@ -45,6 +45,12 @@ pub trait Robot {
         None
     }
 
+    /// Least distance between the robot's body and that of the thing with this index among those that drive by themselves,
+    /// seen from above, metres; 0 where they touch. `None` where nobody knows.
+    fn gap_m(&self, _mover: usize) -> Option<f64> {
+        None
+    }
+
     /// The last observation's image in colour, for pictures, if it can be had; else the observation's own image serves.
     fn photograph(&self) -> Option<Image> {
         None

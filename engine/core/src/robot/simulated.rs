@@ -84,6 +84,10 @@ impl Robot for SimulatedRobot {
         self.world.prey()
     }
 
+    fn gap_m(&self, mover: usize) -> Option<f64> {
+        self.world.gap_m(0, mover)
+    }
+
     /// Call it before anything moves: the frame is drawn a second time.
     fn photograph(&self) -> Option<Image> {
         let mut camera = self.camera.clone();

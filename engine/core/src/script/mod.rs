@@ -31,6 +31,7 @@ mod unknown;
 mod unread;
 
 pub use behaviour::Behaviour;
+pub(crate) use behaviour::Measurable;
 pub(crate) use draft::Draft;
 pub use outline::{BeamLoop, Compared, Condition, Gathers, NamedFact, RuleOutline, ScriptOutline, UnusedName};
 pub use reference::{definitions, reference};

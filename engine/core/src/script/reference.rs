@@ -7,7 +7,7 @@ use crate::judge::fact_table::{FACTS, Fact, GROUPS};
 use crate::judge::functions::FUNCTIONS;
 use crate::judge::sandbox;
 use crate::settings::{SETTINGS, Settings};
-use crate::verdict::{FIGURES, TestFigure};
+use crate::verdict::{FIGURES, Takes, TestFigure};
 use std::fmt::Write;
 
 /// The page about the script language: `scripts/README.md`.
@@ -71,11 +71,12 @@ fn facts() -> String {
 
 fn figures() -> String {
     let row = |figure: &TestFigure| {
-        let name = if figure.is_of_rule() { format!("{}(\"rule\")", figure.name) } else { figure.name.to_owned() };
-        let of = match (figure.needs_route(), figure.is_of_windows()) {
-            (true, _) => "a route",
-            (false, true) => "a test, a window",
-            (false, false) => "a test",
+        let name = figure.takes().form(figure.name);
+        let of = match (figure.needs_route(), figure.takes(), figure.is_of_windows()) {
+            (true, ..) => "a route",
+            (false, Takes::Mover | Takes::MoverAndMetres, _) => "a mover",
+            (false, _, true) => "a test, a window",
+            (false, _, false) => "a test",
         };
         vec![format!("`test.{name}`"), figure.unit.to_owned(), of.to_owned(), figure.about.to_owned()]
     };

@@ -10,7 +10,7 @@ use crate::judge::explain::mistake;
 use crate::judge::expression::{Arithmetic, Comparison};
 use crate::judge::fact_table::is_group;
 use crate::judge::functions::{OF_ONE, OF_ONE_FRACTION, OF_TWO, OF_TWO_FRACTION};
-use crate::verdict::{FIGURES, FigureUse, Subject, SuccessCondition, Term, TestFigure};
+use crate::verdict::{FIGURES, FigureOf, FigureUse, Request, Subject, SuccessCondition, Takes, Term, TestFigure};
 use rhai::{AST, Expr, FnCallExpr, Position, Scope};
 
 const CODE: &str = "E-SCRIPT-SUCCESS";
@@ -160,15 +160,13 @@ impl SuccessCompiler<'_> {
         };
         match access.links.as_slice() {
             [Link::Property(name, position)] => match TestFigure::of(name) {
-                Some(figure) if !figure.is_of_rule() => {
-                    Ok(Kinded::Number(Term::TestFigure(FigureUse { subject, figure, rule: 0 })))
-                }
-                Some(figure) => {
-                    self.wrong(*position, format!("'{name}' needs the name of a rule"), "here", of_rule(figure))
-                }
+                Some(figure) => self.figure(subject, figure, None, *position),
                 None => self.unknown(name, *position),
             },
-            [Link::Call(call, position)] => self.of_rule(subject, call, *position),
+            [Link::Call(call, position)] => match TestFigure::of(call.name.as_str()) {
+                Some(figure) => self.figure(subject, figure, Some(&call.args), *position),
+                None => self.unknown(call.name.as_str(), *position),
+            },
             _ => {
                 let help = format!("write {}.NAME, such as {}.failures_per_1000", subject.word(), subject.word());
                 self.wrong(access.position, "a figure has a name", "of what?", help)
@@ -176,30 +174,61 @@ impl SuccessCompiler<'_> {
         }
     }
 
-    fn of_rule(&self, subject: Subject, call: &FnCallExpr, position: Position) -> Compiled<Kinded> {
-        let name = call.name.as_str();
-        let figure = match TestFigure::of(name) {
-            Some(figure) if figure.is_of_rule() => figure,
-            Some(_) => {
-                let message = format!("'{name}' is a figure, not a function");
-                return self.wrong(position, message, "here", format!("write {}.{name}", subject.word()));
+    /// A figure with what stands in its parentheses, if it has any.
+    fn figure(
+        &self,
+        subject: Subject,
+        figure: &'static TestFigure,
+        arguments: Option<&[Expr]>,
+        position: Position,
+    ) -> Compiled<Kinded> {
+        let name = figure.name;
+        let form = format!("write {}.{}", subject.word(), figure.takes().form(name));
+        let (message, of) = match (figure.takes(), arguments) {
+            (Takes::Nothing, None) => {
+                let request = figure.probe().map(|probe| Request { figure: name, probe, mover: None, metres: 0.0 });
+                (
+                    String::new(),
+                    request.map_or(Some(FigureOf::Whole), |request| Some(FigureOf::Request(request.into()))),
+                )
             }
-            None => return self.unknown(name, position),
-        };
-        let [Expr::StringConstant(rule, at)] = call.args.as_slice() else {
-            return self.wrong(position, format!("'{name}' needs the name of a rule"), "here", of_rule(figure));
-        };
-        match self.rules.iter().position(|own| *own == rule.as_str()) {
-            Some(rule) => Ok(Kinded::Number(Term::TestFigure(FigureUse { subject, figure, rule }))),
-            None => {
-                let message = format!("there is no rule \"{}\"", printable(rule));
-                let help = match nearest_name(rule, self.rules.iter().copied()) {
-                    Some(near) => format!("did you mean \"{}\"?", printable(near)),
-                    None => format!("there are: {}", printable(&self.rules.join(", "))),
-                };
-                self.wrong(*at, message, "not known", help)
+            (Takes::Nothing, Some(_)) => (format!("'{name}' is a figure, not a function"), None),
+            (Takes::Rule, Some([Expr::StringConstant(rule, at)])) => {
+                (String::new(), Some(FigureOf::Rule(self.rule(rule.as_str(), *at)?)))
             }
+            (Takes::Rule, _) => (format!("'{name}' needs the name of a rule"), None),
+            (Takes::Mover, Some([Expr::StringConstant(mover, _)])) => {
+                (String::new(), Self::of_mover(figure, mover.as_str(), 0.0))
+            }
+            (Takes::Mover, _) => (format!("'{name}' needs the name of a mover of the world"), None),
+            (Takes::MoverAndMetres, Some([Expr::StringConstant(mover, _), metres])) => match self.number(metres)? {
+                Term::Constant(metres) => (String::new(), Self::of_mover(figure, mover.as_str(), metres)),
+                _ => (format!("the distance that '{name}' is measured from must be a plain number"), None),
+            },
+            (Takes::MoverAndMetres, _) => {
+                (format!("'{name}' needs the name of a mover of the world, and a distance"), None)
+            }
+        };
+        match of {
+            Some(of) => Ok(Kinded::Number(Term::TestFigure(FigureUse { subject, figure, of }))),
+            None => self.wrong(position, message, "here", form),
         }
+    }
+
+    fn of_mover(figure: &TestFigure, mover: &str, metres: f64) -> Option<FigureOf> {
+        let request = Request { figure: figure.name, probe: figure.probe()?, mover: Some(mover.to_owned()), metres };
+        Some(FigureOf::Request(request.into()))
+    }
+
+    fn rule(&self, rule: &str, at: Position) -> Compiled<usize> {
+        if let Some(index) = self.rules.iter().position(|own| *own == rule) {
+            return Ok(index);
+        }
+        let help = match nearest_name(rule, self.rules.iter().copied()) {
+            Some(near) => format!("did you mean \"{}\"?", printable(near)),
+            None => format!("there are: {}", printable(&self.rules.join(", "))),
+        };
+        self.wrong(at, format!("there is no rule \"{}\"", printable(rule)), "not known", help)
     }
 
     fn unknown<T>(&self, name: &str, position: Position) -> Compiled<T> {
@@ -232,10 +261,6 @@ impl SuccessCompiler<'_> {
             }
         }
     }
-}
-
-fn of_rule(figure: &TestFigure) -> String {
-    format!("write test.{}(\"name of the rule\") <= 5", figure.name)
 }
 
 /// Whether a script has such a statement: before, the words are the script's own.

@@ -4,6 +4,7 @@ mod errors;
 mod mistakes;
 mod pages;
 mod same;
+mod success;
 mod types;
 
 use super::*;

@@ -2,7 +2,7 @@
 
 use super::figures::TestFigure;
 use super::success::SuccessCondition;
-use super::term::{FigureUse, Subject, Term};
+use super::term::{FigureOf, FigureUse, Subject, Term};
 use crate::judge::expression::{Arithmetic, Comparison};
 
 /// In which ways an attempt may end, by the text of a script.
@@ -32,7 +32,8 @@ pub(crate) fn default_conditions(endable: Endable, has_route: bool, seconds: f64
     use Subject::{Test, Untrained};
     let figure = |subject, name| {
         let figure = TestFigure::of(name);
-        figure.map_or(Term::Constant(f64::NAN), |figure| Term::TestFigure(FigureUse { subject, figure, rule: 0 }))
+        let of = FigureOf::Whole;
+        figure.map_or(Term::Constant(f64::NAN), |figure| Term::TestFigure(FigureUse { subject, figure, of }))
     };
     let compare = |comparison, a, b| Term::Compare(comparison, Box::new([a, b]));
     let than = |comparison, subject, name, limit| compare(comparison, figure(subject, name), Term::Constant(limit));

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::asked::{AskedFigure, Probe};
 use super::window::WindowCounts;
 
 /// The frozen policy, judged by the script and by the truth.
@@ -56,6 +57,9 @@ pub struct TestFigures {
     pub does_task: Option<bool>,
     /// What each rule did.
     pub rules: Vec<RuleTotal>,
+    /// What only the conditions of success ask for, such as the gap to a mover that they name.
+    #[serde(default)]
+    pub asked: Vec<AskedFigure>,
 }
 
 /// What one rule did.
@@ -100,6 +104,33 @@ pub(crate) enum Source {
     Goal(fn(&TestFigures) -> Option<f64>),
     /// Of the rule that is named.
     Rule(fn(&TestFigures, &RuleTotal) -> f64),
+    /// Measured where a condition asks for it.
+    Asked(Probe),
+}
+
+/// What stands in a figure's parentheses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Takes {
+    /// There are none.
+    Nothing,
+    /// The name of a rule.
+    Rule,
+    /// The name of a mover of the world.
+    Mover,
+    /// The name of a mover, and a distance in metres.
+    MoverAndMetres,
+}
+
+impl Takes {
+    /// How a figure is written that takes this.
+    pub(crate) fn form(self, figure: &str) -> String {
+        match self {
+            Self::Nothing => figure.to_owned(),
+            Self::Rule => format!("{figure}(\"rule\")"),
+            Self::Mover => format!("{figure}(\"mover\")"),
+            Self::MoverAndMetres => format!("{figure}(\"mover\", 0.8)"),
+        }
+    }
 }
 
 /// A figure that scripts can ask for: `test.NAME`, `untrained.NAME`.
@@ -123,10 +154,21 @@ impl TestFigure {
         FIGURES.iter().find(|figure| figure.name == name)
     }
 
-    /// Whether it is asked for with the name of a rule.
+    /// What stands in its parentheses.
     #[must_use]
-    pub(crate) fn is_of_rule(&self) -> bool {
-        matches!(self.source, Source::Rule(_))
+    pub(crate) fn takes(&self) -> Takes {
+        match self.source {
+            Source::Test(_) | Source::Route(_) | Source::Goal(_) | Source::Asked(Probe::FloorCovered) => Takes::Nothing,
+            Source::Rule(_) => Takes::Rule,
+            Source::Asked(Probe::GapError) => Takes::MoverAndMetres,
+            Source::Asked(Probe::Gap | Probe::ContactsWith) => Takes::Mover,
+        }
+    }
+
+    /// What is measured for it on request.
+    #[must_use]
+    pub(crate) fn probe(&self) -> Option<Probe> {
+        if let Source::Asked(probe) = self.source { Some(probe) } else { None }
     }
 
     /// Whether only a world with a lap route has it.
@@ -153,6 +195,10 @@ const fn route(
     about: &'static str,
 ) -> TestFigure {
     TestFigure { name, unit, about, source: Source::Route(get), window: None }
+}
+
+const fn asked(name: &'static str, unit: &'static str, probe: Probe, about: &'static str) -> TestFigure {
+    TestFigure { name, unit, about, source: Source::Asked(probe), window: None }
 }
 
 impl TestFigure {
@@ -224,4 +270,23 @@ pub const FIGURES: &[TestFigure] = &[
     ),
     test("idle", "share", TestFigures::idle, "Spells spinning, standing, circling or returning."),
     route("backwards", "share", |test| test.backwards, "Spells of 20 s with backward progress along the route."),
+    asked(
+        "gap_m",
+        "metres",
+        Probe::Gap,
+        "Median over all steps of the gap between the robot's body and a mover's, seen from above.",
+    ),
+    asked(
+        "gap_error_m",
+        "metres",
+        Probe::GapError,
+        "Mean over all steps of how far that gap is from the one that is named.",
+    ),
+    asked("contacts_with", "steps", Probe::ContactsWith, "Steps in which the body touched that mover."),
+    asked(
+        "floor_covered",
+        "share",
+        Probe::FloorCovered,
+        "Squares of 0.25 m whose middle the body has covered, of those that it can reach from the starts.",
+    ),
 ];

@@ -5,6 +5,7 @@
 //!   window.rs  (windows of learning)  ----------------------------------------->   the default) --> judged.rs (the verdict)
 //! ```
 
+mod asked;
 mod default;
 mod figures;
 mod judged;
@@ -12,6 +13,7 @@ mod success;
 mod term;
 mod window;
 
+pub use asked::{AskedFigure, Probe, Request};
 pub use figures::{FIGURES, RuleTotal, TestFigure, TestFigures};
 pub use judged::{Because, ConditionVerdict, FigureVerdict, SuccessVerdict};
 pub use success::{Success, SuccessCondition};
@@ -19,4 +21,5 @@ pub use term::Subject;
 pub use window::{WINDOW_STEPS, Window, WindowCounts};
 
 pub(crate) use default::Endable;
-pub(crate) use term::{FigureUse, Term};
+pub(crate) use figures::Takes;
+pub(crate) use term::{FigureOf, FigureUse, Term};

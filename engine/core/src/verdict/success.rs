@@ -1,7 +1,9 @@
 //! The conditions of success of one behaviour in one world, and from which step on learning meets them.
 
 use std::ops::Range;
+use std::sync::Arc;
 
+use super::asked::Request;
 use super::default::{Endable, default_conditions};
 use super::figures::TestFigures;
 use super::judged::{Because, ConditionVerdict, FigureVerdict, SuccessVerdict};
@@ -69,6 +71,18 @@ impl Success {
         &self.conditions
     }
 
+    /// What a test must measure since a condition asks for it, each once.
+    #[must_use]
+    pub fn requests(&self) -> Vec<Arc<Request>> {
+        let mut requests: Vec<Arc<Request>> = Vec::new();
+        for asked in self.conditions.iter().flat_map(|condition| condition.term.figures()) {
+            if let Some(request) = asked.of.request().filter(|request| !requests.contains(request)) {
+                requests.push(Arc::clone(request));
+            }
+        }
+        requests
+    }
+
     /// Whether a test is a success, beside what a robot that knows nothing does in the same test.
     #[must_use]
     pub fn verdict(&self, test: &TestFigures, untrained: &TestFigures) -> SuccessVerdict {
@@ -108,11 +122,7 @@ impl Success {
     fn judged(&self, condition: &SuccessCondition, own: SideBySide<'_>, chance: SideBySide<'_>) -> ConditionVerdict {
         let mut figures: Vec<FigureVerdict> = Vec::new();
         for asked in condition.term.figures() {
-            let rule = asked.figure.is_of_rule().then(|| own.test.rules.get(asked.rule)).flatten();
-            let name = rule.map_or_else(
-                || asked.figure.name.to_owned(),
-                |rule| format!("{}(\"{}\")", asked.figure.name, rule.name),
-            );
+            let name = asked.of.written(asked.figure, own.test);
             if figures.iter().all(|known| known.name != name) {
                 let asked = super::term::FigureUse { subject: Subject::Test, ..asked };
                 figures.push(FigureVerdict { name, value: asked.read(own), untrained: asked.read(chance) });

@@ -1,5 +1,8 @@
 //! What a condition of success computes from figures: a small tree, with no step in it.
 
+use std::sync::Arc;
+
+use super::asked::Request;
 use super::figures::{Source, TestFigure, TestFigures};
 use super::window::WindowCounts;
 use crate::judge::expression::{Arithmetic, Comparison};
@@ -25,12 +28,22 @@ impl Subject {
 }
 
 /// A figure as it is asked for.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct FigureUse {
     pub subject: Subject,
     pub figure: &'static TestFigure,
-    /// The number of the rule that is named; 0 where none is.
-    pub rule: usize,
+    pub of: FigureOf,
+}
+
+/// What a figure is of.
+#[derive(Debug, Clone)]
+pub(crate) enum FigureOf {
+    /// The whole test.
+    Whole,
+    /// The rule with this number.
+    Rule(usize),
+    /// What is measured since it is asked for.
+    Request(Arc<Request>),
 }
 
 /// Both sides' figures.
@@ -92,14 +105,14 @@ impl Term {
 
     /// Whether it holds of a window of learning.
     pub(crate) fn holds_in_window(&self, counts: &WindowCounts<'_>) -> bool {
-        self.holds(&|asked| Some(asked.figure.window?(counts, asked.rule))).unwrap_or(false)
+        self.holds(&|asked| Some(asked.figure.window?(counts, asked.of.rule()))).unwrap_or(false)
     }
 
     /// All figures that it reads, in their order.
     pub(crate) fn figures(&self) -> Vec<FigureUse> {
         match self {
             Self::Constant(_) | Self::Flag(_) => Vec::new(),
-            Self::TestFigure(figure) => vec![*figure],
+            Self::TestFigure(figure) => vec![figure.clone()],
             Self::Negate(of) | Self::OfOne(_, of) | Self::Not(of) => of.figures(),
             Self::Binary(_, sides) | Self::OfTwo(_, sides) | Self::Compare(_, sides) => {
                 sides.iter().flat_map(Self::figures).collect()
@@ -120,7 +133,35 @@ impl FigureUse {
             Source::Test(get) => Some(get(test)),
             Source::Route(get) => get(test),
             Source::Goal(get) => Some(get(test).unwrap_or(measured.seconds)),
-            Source::Rule(get) => test.rules.get(self.rule).map(|rule| get(test, rule)),
+            Source::Rule(get) => test.rules.get(self.of.rule()).map(|rule| get(test, rule)),
+            Source::Asked(_) => {
+                let name = self.of.request()?.to_string();
+                test.asked.iter().find(|asked| asked.name == name)?.value
+            }
+        }
+    }
+}
+
+impl FigureOf {
+    /// The number of the rule that is named; 0 where none is.
+    fn rule(&self) -> usize {
+        if let Self::Rule(index) = self { *index } else { 0 }
+    }
+
+    /// What is to be measured.
+    pub(crate) fn request(&self) -> Option<&Arc<Request>> {
+        if let Self::Request(request) = self { Some(request) } else { None }
+    }
+
+    /// A figure's name with what stands in its parentheses, for a test with these rules.
+    pub(super) fn written(&self, figure: &TestFigure, test: &TestFigures) -> String {
+        match self {
+            Self::Whole => figure.name.to_owned(),
+            Self::Rule(index) => match test.rules.get(*index) {
+                Some(rule) => format!("{}(\"{}\")", figure.name, rule.name),
+                None => figure.name.to_owned(),
+            },
+            Self::Request(request) => request.to_string(),
         }
     }
 }

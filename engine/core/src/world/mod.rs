@@ -6,6 +6,7 @@
 mod body;
 mod contact;
 mod drivetrain;
+mod floor_squares;
 mod layout;
 mod mover;
 mod obstacle;
@@ -20,6 +21,7 @@ mod traffic;
 mod vehicle;
 
 pub use body::{Body, Motion};
+pub(crate) use floor_squares::FloorSquares;
 pub use layout::Layout;
 pub use mover::Mover;
 pub use route::Route;
@@ -166,6 +168,16 @@ impl World {
     #[must_use]
     pub fn prey(&self) -> Option<Pose> {
         self.layout.movers.first().map(|mover| mover.pose_at(&self.layout.routes, self.mover_time_s()))
+    }
+
+    /// Least distance between a body and the mover with this index, seen from above, metres: 0 where they touch. `None` if
+    /// there is no such mover.
+    ///
+    /// # Panics
+    /// If there is no such body.
+    #[must_use]
+    pub fn gap_m(&self, index: usize, mover: usize) -> Option<f64> {
+        self.traffic.gap_m(&self.vehicles[index].solid(self.material), &self.layout.movers, mover)
     }
 
     /// The route of the first mover, and how far along it the mover is now, metres.

@@ -59,6 +59,14 @@ impl Traffic {
         }
     }
 
+    /// Least distance from a solid to a mover's solids on the floor plan, metres.
+    pub(super) fn gap_m(&self, from: &Solid, movers: &[Mover], mover: usize) -> Option<f64> {
+        let first: usize = movers.get(..mover)?.iter().map(|before| before.solids.len()).sum();
+        let own = self.movers.get(first..first + movers.get(mover)?.solids.len())?;
+        let from = Obstacle::new(from);
+        own.iter().map(|obstacle| from.gap_m(obstacle)).reduce(f64::min)
+    }
+
     pub(super) fn has_movers(&self) -> bool {
         !self.movers.is_empty()
     }

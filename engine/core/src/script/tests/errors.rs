@@ -10,7 +10,7 @@ fn wrong(text: &str) -> Diagnostic {
 }
 
 /// Code, the marked text, and the help must be these.
-fn expect(text: &str, code: &str, marked: &str, help: &str) {
+pub(super) fn expect(text: &str, code: &str, marked: &str, help: &str) {
     let wrong = wrong(text);
     let place = wrong.place.as_ref().unwrap_or_else(|| panic!("{text}: {wrong:?}"));
     let found = &place.source.text[place.span.clone()];

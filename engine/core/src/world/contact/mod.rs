@@ -1,5 +1,6 @@
 //! Whether a body overlaps a solid: exact tests on the floor plan, heights beside them.
 
+mod gap;
 mod rectangle;
 mod round;
 #[cfg(test)]

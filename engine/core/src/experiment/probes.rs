@@ -1,0 +1,90 @@
+//! What a test measures only since a condition of success asks for it.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use super::{Cycle, Observer, Plan, Step};
+use crate::robot::Robot;
+use crate::settings::BodyShape;
+use crate::stats::Sorted;
+use crate::verdict::{AskedFigure, Probe, Request};
+use crate::world::FloorSquares;
+
+/// A contact is one with a mover that is no farther away than this, metres: a body stops a sixteenth of a tick before it.
+const TOUCHING_M: f64 = 0.01;
+
+/// Looks on while a test runs.
+#[derive(Debug)]
+pub(super) struct Probes {
+    requests: Vec<Arc<Request>>,
+    movers: Vec<MoverProbe>,
+    floor: Option<(FloorSquares, BodyShape)>,
+}
+
+/// The gaps to one mover.
+#[derive(Debug)]
+struct MoverProbe {
+    index: usize,
+    name: String,
+    /// After each step, metres.
+    gaps_m: Vec<f32>,
+    contacts: u64,
+}
+
+impl Probes {
+    /// For what the plan's conditions ask for.
+    pub(super) fn new(plan: &Plan) -> Self {
+        let requests = plan.success().requests();
+        let asked = |name: &str| requests.iter().any(|request| request.mover.as_deref() == Some(name));
+        let steps = plan.settings.run.test_steps as usize;
+        let movers = plan.layout.movers.iter().enumerate().filter(|(_, mover)| asked(&mover.name));
+        let movers = movers.map(|(index, mover)| {
+            let name = mover.name.clone();
+            MoverProbe { index, name, gaps_m: Vec::with_capacity(steps), contacts: 0 }
+        });
+        let movers = movers.collect();
+        let body = plan.settings.robot.body;
+        let covers = requests.iter().any(|request| request.probe == Probe::FloorCovered);
+        let floor = covers.then(|| FloorSquares::new(&plan.layout, &body)).flatten().map(|floor| (floor, body));
+        Self { requests, movers, floor }
+    }
+
+    /// The figures, in the order in which they are asked for.
+    pub(super) fn finish(&self) -> Vec<AskedFigure> {
+        self.requests
+            .iter()
+            .map(|request| AskedFigure { name: request.to_string(), value: self.value(request) })
+            .collect()
+    }
+
+    fn value(&self, request: &Request) -> Option<f64> {
+        if request.probe == Probe::FloorCovered {
+            return self.floor.as_ref().map(|(floor, _)| floor.covered());
+        }
+        let mover = self.movers.iter().find(|mover| Some(&mover.name) == request.mover.as_ref())?;
+        let gaps = mover.gaps_m.iter().map(|gap| f64::from(*gap));
+        let count = mover.gaps_m.len();
+        match request.probe {
+            _ if count == 0 => None,
+            Probe::Gap => gaps.collect::<Sorted>().upper_median(),
+            Probe::GapError => Some(gaps.map(|gap| (gap - request.metres).abs()).sum::<f64>() / count as f64),
+            Probe::ContactsWith => Some(mover.contacts as f64),
+            Probe::FloorCovered => None,
+        }
+    }
+}
+
+impl<R: Robot> Observer<R> for Probes {
+    fn stepped(&mut self, cycle: &Cycle<R>, step: &Step) -> ControlFlow<()> {
+        for mover in &mut self.movers {
+            if let Some(gap_m) = cycle.robot().gap_m(mover.index) {
+                mover.contacts += u64::from(step.contact && gap_m <= TOUCHING_M);
+                mover.gaps_m.push(gap_m as f32);
+            }
+        }
+        if let (Some((floor, body)), Some(here)) = (&mut self.floor, cycle.robot().whereabouts()) {
+            floor.cover(body, here.pose);
+        }
+        ControlFlow::Continue(())
+    }
+}
