@@ -52,7 +52,10 @@ fn every_seeded_mistake_is_found_in_its_line() {
 #[test]
 fn nothing_is_found_in_scripts_that_ship() {
     for path in scripts("scripts") {
-        assert_eq!(found(&path), [], "{}", path.display());
+        // The paper's erroneous reward is meant to be one: slow turning earns more than the corridor, line by line.
+        let known =
+            if path.ends_with("corridor-erroneous.rhai") { vec![("W-EXPLOIT".to_owned(), 13)] } else { Vec::new() };
+        assert_eq!(found(&path), known, "{}", path.display());
     }
 }
 
@@ -95,9 +98,44 @@ fn the_program_says_how_it_went_by_its_exit_status() {
     assert_eq!(report["findings"][0]["code"], "W-UNIT");
     assert_eq!((&report["findings"][0]["line"], &report["findings"][0]["severity"]), (&2.into(), &"warning".into()));
     assert!(report["findings"][0]["help"].as_str().unwrap().contains("25 cm are 0.25 m"));
+    assert_eq!((&report["findings"][0]["file"], &report["findings"][0]["end_line"]), (&"unit.rhai".into(), &2.into()));
     let shown = bench.engine(&["check", "unit.rhai"]);
     let shown = String::from_utf8(shown.stdout).unwrap();
     assert!(shown.contains("warning[W-UNIT]") && shown.contains("^^^^"), "{shown}");
+}
+
+#[test]
+fn findings_and_errors_have_one_shape_in_every_format() {
+    let bench = Bench::new();
+    let clean = "world(\"small\");\nrule \"too close\" when laser.nearest <= 0.25 => -1 then recover;\n";
+    bench.write("unit.rhai", clean.replace("0.25", "25"));
+    bench.write("broken.rhai", clean.replace("nearest", "neerest").replace("recover", "recovver"));
+    let told = |script: &str, format: &str| {
+        let output = bench.engine(&["check", script, "--format", format]);
+        (output.status.code().unwrap(), String::from_utf8(output.stdout).unwrap(), output.stderr)
+    };
+    let (status, short, _) = told("unit.rhai", "short");
+    assert_eq!(status, 1);
+    assert!(short.starts_with("unit.rhai:2:23: W-UNIT "), "{short}");
+    let (status, short, errors) = told("broken.rhai", "short");
+    assert_eq!((status, errors.as_slice()), (3, &b""[..]));
+    assert!(short.lines().all(|line| line.starts_with("broken.rhai:2:") && line.contains(": E-SCRIPT-")), "{short}");
+    // Every finding has the fields of an error, and a line of the log for code hosts.
+    let broken = bench.engine(&["check", "broken.rhai", "--json"]);
+    let error: serde_json::Value = serde_json::from_slice(&broken.stderr).unwrap();
+    let found: serde_json::Value = serde_json::from_str(&told("unit.rhai", "json").1).unwrap();
+    for key in found["findings"][0].as_object().unwrap().keys() {
+        assert!(error.get(key).is_some(), "{key}");
+    }
+    for (script, level) in [("unit.rhai", "warning"), ("broken.rhai", "error")] {
+        let log: serde_json::Value = serde_json::from_str(&told(script, "sarif").1).unwrap();
+        let (run, rules) = (&log["runs"][0], &log["runs"][0]["tool"]["driver"]["rules"]);
+        let result = &run["results"][0];
+        assert_eq!((&log["version"], &result["level"]), (&"2.1.0".into(), &level.into()));
+        let place = &result["locations"][0]["physicalLocation"];
+        assert_eq!((&place["artifactLocation"]["uri"], &place["region"]["startLine"]), (&script.into(), &2.into()));
+        assert!(rules.as_array().unwrap().iter().any(|rule| rule["id"] == result["ruleId"]), "{rules}");
+    }
 }
 
 #[test]

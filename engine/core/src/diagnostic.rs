@@ -10,11 +10,13 @@ mod excerpt;
 mod lines;
 mod mistakes;
 mod render;
+mod told;
 
 pub use codes::{all_codes, code_page};
 pub use excerpt::excerpt;
 use lines::Lines;
 pub(crate) use mistakes::{MOST_MISTAKES, Mistakes};
+pub use told::Told;
 
 /// The result of anything that a user's input can make fail.
 pub type Result<T> = std::result::Result<T, Box<Diagnostic>>;

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
-pub(crate) use check::CheckArguments;
+pub(crate) use check::{CheckArguments, CheckFormat};
 pub(crate) use pack::*;
 pub(crate) use recorded::{ExplainArguments, ReplayArguments, RescoreArguments};
 pub(crate) use watch::WatchArguments;
@@ -61,7 +61,7 @@ impl Command {
     pub(crate) fn wants_json(&self) -> bool {
         match self {
             Self::Run(arguments) => arguments.json,
-            Self::Check(arguments) => arguments.json,
+            Self::Check(arguments) => arguments.format() == CheckFormat::Json,
             Self::Test(arguments) => arguments.json,
             Self::Replay(arguments) => arguments.json,
             Self::Explain(arguments) => arguments.json,

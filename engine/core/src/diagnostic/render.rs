@@ -74,27 +74,4 @@ impl Diagnostic {
         }
         renderer.render(&report)
     }
-
-    /// The error as one JSON object: code, message, file, line, column, found, help; and the further mistakes, each such
-    /// an object, as `others`, with the number of those `left_out`.
-    #[must_use]
-    pub fn to_json(&self) -> serde_json::Value {
-        let mut object = self.json_of_one();
-        object["others"] = self.others.iter().map(Self::json_of_one).collect();
-        object["left_out"] = self.left_out.into();
-        object
-    }
-
-    fn json_of_one(&self) -> serde_json::Value {
-        let position = self.place.as_ref().map(|place| place.source.position(place.span.start));
-        serde_json::json!({
-            "code": self.code,
-            "message": self.message,
-            "file": self.place.as_ref().map(|place| place.source.path.display().to_string()),
-            "line": position.map(|(line, _)| line),
-            "column": position.map(|(_, column)| column),
-            "found": self.place.as_ref().map(|place| place.label.clone()),
-            "help": self.help,
-        })
-    }
 }

@@ -10,6 +10,7 @@ mod fired;
 mod loops;
 mod model;
 mod outcome;
+mod sarif;
 mod scale;
 mod setup;
 mod shadow;
@@ -20,6 +21,7 @@ mod verdict;
 pub use exploit::{Exploit, Exploits};
 pub use finding::{Finding, Severity};
 pub use model::{Coverage, Model};
+pub use sarif::sarif;
 pub use trial::{LintTrial, TrialStep};
 pub use verdict::ExploitVerdict;
 

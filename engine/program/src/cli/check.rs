@@ -2,9 +2,29 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use super::FilterSources;
+
+/// How findings are printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum CheckFormat {
+    /// Each with its line, a caret and a way out, then what cheats earn
+    Text,
+    /// One line each: file:line:column: code message
+    Short,
+    /// One object with findings and figures
+    Json,
+    /// SARIF 2.1.0, as code hosts and editors read it
+    Sarif,
+}
+
+impl CheckArguments {
+    /// The format, whichever way it was asked for.
+    pub(crate) fn format(&self) -> CheckFormat {
+        if self.json { CheckFormat::Json } else { self.format }
+    }
+}
 
 #[derive(Debug, Args)]
 #[command(after_help = "Exit status: 0 nothing found; 1 errors or warnings; 2 usage; 3 it does not load; \
@@ -18,8 +38,11 @@ pub(crate) struct CheckArguments {
     /// Change a setting of the script, such as camera.tilt_deg=40; may be given again
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
-    /// Print findings and figures as JSON on standard output, and nothing else there
-    #[arg(long)]
+    /// How to print what is found
+    #[arg(long, value_enum, default_value = "text", value_name = "FORMAT")]
+    pub(crate) format: CheckFormat,
+    /// Print findings and figures as JSON on standard output, and nothing else there: the same as --format json
+    #[arg(long, conflicts_with = "format")]
     pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) filters: FilterSources,

@@ -3,25 +3,54 @@
 use std::io::IsTerminal;
 use std::sync::atomic::AtomicBool;
 
+use engine::diagnostic::Told;
 use engine::experiment::{Overrides, Plan};
 use insight::lint::{self, Exploits, Report, Severity};
 use insight::words::short;
 use pack::Runnable;
 
 use super::behaviour::open_to_look;
-use crate::cli::CheckArguments;
+use crate::cli::{CheckArguments, CheckFormat};
 use crate::console::{Console, ConsoleError};
 
 pub(crate) fn run(arguments: &CheckArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
     let overrides =
         Overrides { world: arguments.world.clone(), steps: None, test_steps: None, set: arguments.set.clone() };
-    // A pack's filters stand in a folder that lives as long as it does.
-    let Runnable { plan, unpacked: _unpacked, .. } =
-        open_to_look(&arguments.behaviour, &overrides, &arguments.filters, false)?;
-    let report = lint::check_behaviour(&plan)?;
-    console.json(&report)?;
-    print(console, &plan, &report)?;
+    let format = arguments.format();
+    let checked = open_to_look(&arguments.behaviour, &overrides, &arguments.filters, false).and_then(|runnable| {
+        // A pack's filters stand in a folder that lives as long as it does.
+        let Runnable { plan, unpacked: _unpacked, .. } = runnable;
+        lint::check_behaviour(&plan).map(|report| (plan, report))
+    });
+    let (plan, report) = match checked {
+        Ok(checked) => checked,
+        // What does not load is told in the form that was asked for.
+        Err(fault) if matches!(format, CheckFormat::Short | CheckFormat::Sarif) => {
+            print_told(console, format, &fault.told_with_others())?;
+            return Ok(fault.kind().exit_status());
+        }
+        Err(fault) => return Err(fault.into()),
+    };
+    let told: Vec<Told> =
+        report.findings.iter().map(|finding| finding.diagnostic(&plan).told(finding.severity)).collect();
+    match format {
+        CheckFormat::Text => print(console, &plan, &report)?,
+        CheckFormat::Json => {
+            let mut whole = serde_json::json!(report);
+            // In the shape that errors have.
+            whole["findings"] = serde_json::json!(told);
+            console.json(&whole)?;
+        }
+        CheckFormat::Short | CheckFormat::Sarif => print_told(console, format, &told)?,
+    }
     Ok(u8::from(!report.is_clean()))
+}
+
+fn print_told(console: &mut Console, format: CheckFormat, told: &[Told]) -> std::result::Result<(), ConsoleError> {
+    if format == CheckFormat::Sarif {
+        return console.line(&format!("{:#}", lint::sarif(told)));
+    }
+    told.iter().try_for_each(|one| console.line(&one.to_string()))
 }
 
 fn print(console: &mut Console, plan: &Plan, report: &Report) -> std::result::Result<(), ConsoleError> {

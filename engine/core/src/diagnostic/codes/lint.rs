@@ -8,7 +8,9 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
         "W-EXPLOIT",
         Kind::Input,
         "A behaviour that gets nowhere earns more than driving on: spinning in place, standing, U-turns. The learner will find it.\n\
-      Each line of the table was driven in the simulator. Reward progress, or punish what the robot does instead of it.",
+      Each line of the table was driven in the simulator. Reward progress, or punish what the robot does instead of it.\n\
+      \"Easier\": a robot that never failed would earn more, but nothing that was learned in a few thousand steps does. Where the \
+      state cannot tell what to do, look at camera, filter and grid before you change the reward.",
     ),
     (
         "W-GOAL-CONTACT",

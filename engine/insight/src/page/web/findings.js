@@ -52,7 +52,7 @@ function showFindings(doc, waits, goLine) {
 /** Every behaviour that was driven, with its figures. */
 function showCheats(exploits) {
   const { behaviours, coverage, cheapest, verdict } = exploits;
-  const bad = verdict === 'pays' ? 'warning' : verdict === 'equal' ? 'note' : null;
+  const bad = verdict === 'pays' || verdict === 'easier' ? 'warning' : verdict === 'equal' ? 'note' : null;
   const head = [
     ['behaviour', ''], ['reward', 'per 400 steps'], ['failures', 'per 1,000'], ['speed', 'm/s'], ['net', 'm/s'], ['spinning', '%'],
   ];
