@@ -26,6 +26,8 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("page", &["lint", "report"]),
     ("record", &[]),
     ("folder", &["store", "lint", "report", "page"]),
+    ("compare", &["store", "report"]),
+    ("shelf", &["store", "report"]),
 ];
 const SHARED: &[&str] = &["geometry", "random", "saved", "settings", "diagnostic", "digest", "outcome", "stats"];
 /// Libraries that only some rooms may know. Clocks, hash maps, sines of the platform and fused steps are in clippy.toml.

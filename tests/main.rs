@@ -18,6 +18,8 @@ mod bench;
 mod browser;
 /// Learned policies combined: files, figures, disagreements, mistakes.
 mod combine;
+/// Runs beside one another, listed, tagged and pruned; many seeds in their order.
+mod compare;
 /// The C header says what the Rust side of the filter contract says, on 64 and on 32 bits.
 mod contract;
 /// Licences and sources of all dependencies are those that deny.toml allows.

@@ -7,15 +7,19 @@
 //! | [`report`] | pictures, CSV, files written whole or not at all |
 //! | [`page`] | a run as one document of data, and the HTML that shows it |
 //! | [`folder`] | a run's folder, written |
+//! | [`compare`] | runs beside one another |
+//! | [`shelf`] | the runs that stand under a folder |
 //! | [`record`] | a run as an MCAP file for Foxglove and Rerun |
 //! | [`words`] | numbers as people read them |
 
+pub mod compare;
 pub mod folder;
 pub mod lint;
 mod markup;
 pub mod page;
 pub mod record;
 pub mod report;
+pub mod shelf;
 pub mod store;
 pub mod verdict_words;
 pub mod words;

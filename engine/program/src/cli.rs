@@ -3,6 +3,7 @@
 mod check;
 mod pack;
 mod recorded;
+mod runs;
 mod watch;
 
 use std::path::PathBuf;
@@ -12,6 +13,7 @@ use clap::{Args, Parser, Subcommand};
 pub(crate) use check::{CheckArguments, CheckFormat};
 pub(crate) use pack::*;
 pub(crate) use recorded::{ExplainArguments, ReplayArguments, RescoreArguments};
+pub(crate) use runs::{CompareArguments, RunsArguments, RunsCommand};
 pub(crate) use watch::WatchArguments;
 
 /// Learns visual robot behaviours from reward scripts: learned, tested and drawn in about a second.
@@ -34,6 +36,10 @@ pub(crate) enum Command {
     Replay(ReplayArguments),
     /// Why a step was rewarded as it was, or what the code of an error means
     Explain(ExplainArguments),
+    /// Runs beside one another: curves, figures with intervals and exact tests, states, settings, lines
+    Compare(CompareArguments),
+    /// List the runs that stand here; tag and prune them
+    Runs(RunsArguments),
     /// Judge a recorded run by another script, and show which states change their action
     Rescore(RescoreArguments),
     /// Learn again on every save, and show what changed and why on a page in the browser
@@ -65,6 +71,8 @@ impl Command {
             Self::Test(arguments) => arguments.json,
             Self::Replay(arguments) => arguments.json,
             Self::Explain(arguments) => arguments.json,
+            Self::Compare(arguments) => arguments.json,
+            Self::Runs(arguments) => arguments.json,
             Self::Rescore(arguments) => arguments.json,
             Self::Watch(arguments) => arguments.json,
             Self::Bench(arguments) => arguments.json,
@@ -91,6 +99,9 @@ pub(crate) struct RunArguments {
     /// How many seeds to learn, from --seed on
     #[arg(long, default_value = "1", value_parser = count, allow_hyphen_values = true, value_name = "N")]
     pub(crate) seeds: u64,
+    /// With --seeds: the share of the seeds that must succeed, 0 to 1; without it, more than half
+    #[arg(long, value_parser = share, allow_hyphen_values = true, value_name = "SHARE")]
+    pub(crate) enough: Option<f64>,
     /// How many threads to use; without it, one for each core
     #[arg(long, value_parser = count, allow_hyphen_values = true, value_name = "N")]
     pub(crate) threads: Option<u64>,

@@ -58,9 +58,9 @@ pub(super) fn judge(behaviours: &[Exploit], against: &Against) -> (Option<usize>
     let event = against.largest.max(0.02 * scale);
     let sure = 3.0 * spread(cheat) + event;
     let more = cheat.reward_per_400 - against.honest;
-    let easier = against
-        .learned
-        .is_some_and(|(learned, chance)| cheat.reward_per_400 - learned > 2.0 * chance.hypot(spread(cheat)) + event);
+    let easier = against.learned.is_some_and(|(learned, chance)| {
+        cheat.reward_per_400 - learned > 2.0 * (chance * chance + spread(cheat) * spread(cheat)).sqrt() + event
+    });
     let verdict = match () {
         () if more > sure => ExploitVerdict::Pays,
         () if easier => ExploitVerdict::Easier,

@@ -10,10 +10,10 @@ use crate::words::spaced;
 use engine::diagnostic::Result;
 use engine::stats::Sorted;
 
-const WIDTH_PX: f64 = 1200.0;
-const HEIGHT_PX: f64 = 700.0;
+pub(super) const WIDTH_PX: f64 = 1200.0;
+pub(super) const HEIGHT_PX: f64 = 700.0;
 /// Right end of the plot and of the legend.
-const END_PX: f64 = WIDTH_PX - 40.0;
+pub(super) const END_PX: f64 = WIDTH_PX - 40.0;
 /// Room for six digits and the title beside them.
 const LEFT_PX: f64 = 84.0;
 
@@ -57,7 +57,7 @@ pub fn learning_curve(data: &CurveData<'_>) -> Result<Picture> {
     sheet.finish()
 }
 
-fn frame(sheet: &mut Sheet, data: &CurveData<'_>) -> Plot {
+pub(super) fn frame(sheet: &mut Sheet, data: &CurveData<'_>) -> Plot {
     let windows = data.curves.iter().map(Vec::len).max().unwrap_or(0);
     let last = (windows as f64 * data.window_steps as f64).max(data.learned_at.unwrap_or(0) as f64);
     let (low, high) = range(data.curves.iter().flatten().copied());
@@ -73,7 +73,7 @@ fn frame(sheet: &mut Sheet, data: &CurveData<'_>) -> Plot {
 }
 
 /// Draws values as a line that is broken where one is not finite; a lone value is a dot.
-fn stroke(
+pub(super) fn stroke(
     sheet: &mut Sheet,
     values: impl Iterator<Item = f64>,
     place: impl Fn(usize, f64) -> Spot,
@@ -96,7 +96,7 @@ fn stroke(
 }
 
 /// Lower quartile, median and upper quartile of each window, over the runs that reached it; NaN where none did.
-fn quartiles(curves: &[Vec<f64>]) -> Vec<[f64; 3]> {
+pub(super) fn quartiles(curves: &[Vec<f64>]) -> Vec<[f64; 3]> {
     let windows = curves.iter().map(Vec::len).max().unwrap_or(0);
     let bands = (0..windows).map(|window| {
         let values = curves.iter().filter_map(|curve| curve.get(window).copied());

@@ -13,20 +13,20 @@ pub use parts::{RUN_FILE, SUMMARY_FILE};
 pub use policy_file::{POLICY_FILE, StoredPolicy, policy_from_toml, policy_to_toml};
 pub use run_file::{StoredRun, run_to_toml};
 
-use engine::diagnostic::{Diagnostic, Result, SourceText};
+use engine::diagnostic::{Diagnostic, Result, SourceText, printable};
 use std::path::Path;
 
 /// The largest stored file that is read, bytes.
 const MAX_BYTES: u64 = 256 << 20;
+/// Of the runs in a folder so many are named.
+const MOST_NAMED: usize = 12;
 
 /// Reads a text file of a stored run.
 ///
 /// # Errors
 /// If it is missing, too large or not text: exit status 7, since a run that lacks it does not fit.
 pub fn read_stored(path: &Path) -> Result<SourceText> {
-    let unfit = |message: String| {
-        Diagnostic::new("E-RUN-FILE", message).help("give the folder of a finished run, such as runs/wall/1")
-    };
+    let unfit = |message: String| Diagnostic::new("E-RUN-FILE", message).help(which_run(path));
     let length =
         std::fs::metadata(path).map_err(|error| Box::new(unfit(Diagnostic::disk("read", path, &error).message)))?.len();
     if length > MAX_BYTES {
@@ -35,6 +35,21 @@ pub fn read_stored(path: &Path) -> Result<SourceText> {
     let text = std::fs::read_to_string(path)
         .map_err(|error| Box::new(unfit(Diagnostic::disk("read", path, &error).message)))?;
     Ok(SourceText::new(path, text))
+}
+
+/// Which folder to give instead of one without this file: the runs that stand in it, if there are any.
+fn which_run(missing: &Path) -> String {
+    let folder = missing.parent().unwrap_or(Path::new("."));
+    let is_run = |entry: &std::fs::DirEntry| entry.path().join(RUN_FILE).is_file();
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().filter(is_run);
+    let mut runs: Vec<String> = entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    // 2 before 10.
+    runs.sort_by(|a, b| a.len().cmp(&b.len()).then_with(|| a.cmp(b)));
+    let Some(first) = runs.first() else { return "give the folder of a finished run, such as runs/wall/1".to_owned() };
+    let (shown, more) = (runs.len().min(MOST_NAMED), runs.len().saturating_sub(MOST_NAMED));
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    let first = printable(&folder.join(first).display().to_string());
+    format!("it holds the runs {}{more}: write {first}", printable(&runs[..shown].join(", ")))
 }
 
 /// A TOML error as a diagnostic that points into the file.

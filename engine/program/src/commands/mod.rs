@@ -3,6 +3,7 @@
 mod behaviour;
 pub(crate) mod bench;
 pub(crate) mod check;
+pub(crate) mod compare;
 pub(crate) mod explain;
 pub(crate) mod filter;
 pub(crate) mod new;
@@ -14,6 +15,7 @@ pub(crate) mod replay;
 pub(crate) mod reproduce;
 pub(crate) mod rescore;
 pub(crate) mod run;
+pub(crate) mod runs;
 pub(crate) mod sources;
 mod stop;
 pub(crate) mod test;

@@ -1,7 +1,9 @@
 //! `engine run`: learn or combine, test, draw.
 
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use engine::diagnostic::{Diagnostic, Result};
@@ -53,7 +55,7 @@ pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::resul
         let spread = Spread::new(results.iter().map(|result| result.run.summary.clone()).collect());
         console.json(&spread)?;
         print_many(console, &spread)?;
-        2 * spread.successes > spread.seeds.len()
+        is_enough(arguments.enough, &spread)
     };
     if let Some(report) = &checked {
         check::print_short(console, report)?;
@@ -65,6 +67,35 @@ pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::resul
         return Ok(INTERRUPTED);
     }
     Ok(u8::from(!good))
+}
+
+/// Whether so many seeds succeed as are asked for: more than half, if nothing is asked.
+fn is_enough(share: Option<f64>, spread: &Spread) -> bool {
+    let (succeed, all) = (spread.successes as f64, spread.seeds.len() as f64);
+    share.map_or(2.0 * succeed > all, |share| succeed >= share * all)
+}
+
+/// Tells of seeds in their order, whichever thread is done first.
+struct InOrder {
+    /// The seeds that are not told yet, each with its line once it is there.
+    waiting: Mutex<VecDeque<(u64, Option<String>)>>,
+}
+
+impl InOrder {
+    fn new(seeds: &[u64]) -> Self {
+        Self { waiting: Mutex::new(seeds.iter().map(|seed| (*seed, None)).collect()) }
+    }
+
+    fn tell(&self, seed: u64, line: String, print: impl Fn(u64, &str)) {
+        let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(place) = waiting.iter_mut().find(|(waiting, _)| *waiting == seed) {
+            place.1 = Some(line);
+        }
+        while let Some((seed, Some(line))) = waiting.front() {
+            print(*seed, line);
+            waiting.pop_front();
+        }
+    }
 }
 
 /// Refuses what only a behaviour that learns can do.
@@ -129,6 +160,7 @@ fn run_all(
             ));
         }
     };
+    let told = InOrder::new(seeds);
     let results = in_parallel(seeds, threads, |seed| {
         let (started, mut log) = (Instant::now(), RunLog::new(plan));
         let mut run = match run_seed(plan, seed, stop, &report, &mut log) {
@@ -143,7 +175,7 @@ fn run_all(
         };
         run.summary = run.summary.timed(started.elapsed().as_secs_f64());
         if plan.learns() && bar.is_hidden() && !plain {
-            console.note(&format!("seed {seed}: {}", one_line(&run.summary)));
+            told.tell(seed, one_line(&run.summary), |seed, line| console.note(&format!("seed {seed}: {line}")));
         }
         folder.keep_log(plan, seed, &log)?;
         Ok(SeedResult { run, log: (seeds.len() == 1).then_some(log) })

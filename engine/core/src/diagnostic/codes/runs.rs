@@ -18,6 +18,12 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          Give the script of one of the policies, or leave out the option that is about learning.",
     ),
     (
+        "E-COMPARE",
+        Kind::Input,
+        "engine compare holds runs against the first of them, so it needs two at least: folders of one seed or of many, such as \
+         runs/wall/1-30 runs/mine/1-30.",
+    ),
+    (
         "E-IO",
         Kind::Disk,
         "A file or folder could not be read or written; the message has the system's reason.\n\
@@ -120,6 +126,11 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          missing, changed or of another format.\n\
          Give the folder that engine run has written, such as runs/wall/1. A changed copy of script or world \
          in it is refused, since the run would no longer be what it says.",
+    ),
+    (
+        "E-RUN-TAG",
+        Kind::Usage,
+        "A tag of a run is a word or a few on one line, at most 60 characters: engine runs tag runs/wall/1 best",
     ),
     (
         "E-RUN-TAKEN",

@@ -1,0 +1,118 @@
+//! What was changed from one run to another: settings, actions, filters, the world, and the lines of the script.
+
+use engine::experiment::Plan;
+use engine::settings::{SETTINGS, Settings, Value};
+use serde::Serialize;
+use similar::{ChangeTag, TextDiff};
+
+use crate::words::short;
+
+/// What differs.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Changes {
+    /// Settings, actions, filters and world.
+    pub settings: Vec<SettingChange>,
+    /// Lines of the script, those that went and those that came.
+    pub lines: Vec<LineChange>,
+}
+
+/// A setting that differs.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct SettingChange {
+    /// Its name, such as `camera.tilt_deg`.
+    pub name: String,
+    /// In the first run.
+    pub before: String,
+    /// In the other.
+    pub after: String,
+}
+
+/// A line of the script that only one run has.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct LineChange {
+    /// Whether only the other run has it; else only the first has it.
+    pub added: bool,
+    /// Its number in its own script, from 1.
+    pub line: usize,
+    /// The line.
+    pub text: String,
+}
+
+impl Changes {
+    pub(super) fn new(first: &Plan, other: &Plan) -> Self {
+        let scripts = [first, other].map(|plan| plan.behaviour.source().text.as_ref());
+        Self { settings: settings(first, other), lines: lines(scripts[0], scripts[1]) }
+    }
+
+    /// Whether nothing differs.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.settings.is_empty() && self.lines.is_empty()
+    }
+}
+
+fn settings(first: &Plan, other: &Plan) -> Vec<SettingChange> {
+    let (a, b) = (&first.settings, &other.settings);
+    let word = |value: Value| match value {
+        Value::Flag(flag) => flag.to_string(),
+        Value::Text(text) => text,
+        Value::Number(number) => short(number),
+    };
+    let rows = SETTINGS.iter().map(|row| (row.name(), word((row.get)(a)), word((row.get)(b))));
+    let further = [
+        ("world".to_owned(), first.layout.name.clone(), other.layout.name.clone()),
+        ("actions".to_owned(), actions(a), actions(b)),
+        ("filters".to_owned(), filters(a), filters(b)),
+    ];
+    let mut changes: Vec<SettingChange> = further
+        .into_iter()
+        .chain(rows)
+        .filter(|(_, before, after)| before != after)
+        .map(|(name, before, after)| SettingChange { name, before, after })
+        .collect();
+    let texts = [first, other].map(|plan| &plan.layout.source.text);
+    if texts[0] != texts[1] && first.layout.name == other.layout.name {
+        let (before, after) = ("as it was".to_owned(), "another text".to_owned());
+        changes.push(SettingChange { name: "world file".to_owned(), before, after });
+    }
+    changes
+}
+
+fn actions(settings: &Settings) -> String {
+    let action = |twist: &engine::geometry::Twist| format!("[{}, {}]", twist.linear_m_per_s, twist.angular_rad_per_s);
+    settings.actions.iter().map(action).collect::<Vec<_>>().join(" ")
+}
+
+fn filters(settings: &Settings) -> String {
+    let filter = |filter: &engine::settings::FilterSettings| {
+        let parameters = filter.parameters.iter().map(|(name, value)| format!(" {name} {value}")).collect::<String>();
+        format!("{}{parameters}", filter.name)
+    };
+    settings.filters.iter().map(filter).collect::<Vec<_>>().join(", ")
+}
+
+fn lines(before: &str, after: &str) -> Vec<LineChange> {
+    let difference = TextDiff::from_lines(before, after);
+    let changed = difference.iter_all_changes().filter_map(|change| {
+        let (added, index) = match change.tag() {
+            ChangeTag::Equal => return None,
+            ChangeTag::Delete => (false, change.old_index()),
+            ChangeTag::Insert => (true, change.new_index()),
+        };
+        Some(LineChange { added, line: index? + 1, text: change.value().trim_end().to_owned() })
+    });
+    changed.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_that_only_one_script_has_are_told_with_their_numbers() {
+        let changed = lines("a\nb\nc\n", "a\nc\nd\n");
+        let told: Vec<_> = changed.iter().map(|change| (change.added, change.line, change.text.as_str())).collect();
+        assert_eq!(told, [(false, 2, "b"), (true, 3, "d")]);
+        assert!(lines("a\nb", "a\nb\n").len() <= 2 && lines("a\n", "a\n").is_empty());
+    }
+}
