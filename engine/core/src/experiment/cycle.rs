@@ -2,13 +2,16 @@
 
 use crate::diagnostic::{Diagnostic, Result};
 use crate::geometry::Twist;
-use crate::judge::{Facts, Judge};
+use crate::judge::{Facts, Judge, NO_ACTION};
 use crate::robot::Robot;
 use crate::sensors::observation::{Image, Observation};
 use crate::state::{Grid, StateMap};
 
 use super::{Eyes, Plan, Step};
 use filter_api::{Descriptor, Format};
+
+/// From the first beam of the laser to the last, degrees.
+const LASER_VIEW_DEG: f64 = 180.0;
 
 /// A robot with what turns its observations into states and rewards. It does not know who chooses the actions.
 pub struct Cycle<R> {
@@ -24,6 +27,7 @@ pub struct Cycle<R> {
     since_recovery: u64,
     /// What the judge's delayed rules have built up.
     potential: f64,
+    laser_range_m: (f64, f64),
 }
 
 impl<R: Robot> Cycle<R> {
@@ -51,8 +55,10 @@ impl<R: Robot> Cycle<R> {
     pub fn with_eyes(plan: &Plan, robot: R, own: Eyes, mut others: Vec<Eyes>) -> Result<Self> {
         let settings = &plan.settings;
         others.insert(0, own);
-        let format =
-            if others.iter().all(|eyes| eyes.chain.likes() == Format::Grey) { Format::Grey } else { Format::Rgb };
+        let format = match others.iter().flat_map(|eyes| &eyes.chains).all(|chain| chain.likes() == Format::Grey) {
+            true => Format::Grey,
+            false => Format::Rgb,
+        };
         let (width_px, height_px) = (settings.camera.width_px as usize, settings.camera.height_px as usize);
         let mut cycle = Self {
             robot,
@@ -64,9 +70,11 @@ impl<R: Robot> Cycle<R> {
             steps: 0,
             since_recovery: 0,
             potential: 0.0,
+            laser_range_m: (settings.laser.min_range_m, settings.laser.max_range_m),
         };
         cycle.perceive()?;
         cycle.calibrate()?;
+        cycle.rest()?;
         Ok(cycle)
     }
 
@@ -101,12 +109,31 @@ impl<R: Robot> Cycle<R> {
     pub(super) fn swap_judge(&mut self, plan: &Plan) -> Result<()> {
         self.judge = plan.judge()?;
         self.potential = 0.0;
-        self.calibrate()
+        self.calibrate()?;
+        self.rest()
     }
 
     fn calibrate(&mut self) -> Result<()> {
         self.fill_facts(0, self.steps);
         self.judge.calibrate()
+    }
+
+    /// What a script remembers begins with the robot at rest.
+    fn rest(&mut self) -> Result<()> {
+        if self.judge.remembers() {
+            self.judge.recovered();
+            self.fill_facts(NO_ACTION, self.steps);
+            self.judge.take()?;
+            self.compose();
+        }
+        Ok(())
+    }
+
+    /// The states of what was looked at last.
+    fn compose(&mut self) {
+        for (eyes, state) in self.eyes.iter_mut().zip(&mut self.states) {
+            *state = eyes.state(&self.observation.image, self.judge.digits());
+        }
     }
 
     /// The present state, as the script perceives it.
@@ -138,6 +165,9 @@ impl<R: Robot> Cycle<R> {
         self.perceive()?;
         self.fill_facts(action, index + 1);
         let verdict = self.judge.judge().map_err(|error| at_step(error, index))?;
+        if self.judge.remembers() {
+            self.compose();
+        }
         self.steps += 1;
         self.potential = self.judge.potential();
         Ok(Step {
@@ -150,6 +180,7 @@ impl<R: Robot> Cycle<R> {
             potential,
             next_potential: self.potential,
             then: verdict.then,
+            entered: verdict.stage,
             contact: self.observation.contact,
         })
     }
@@ -163,22 +194,24 @@ impl<R: Robot> Cycle<R> {
         self.judge.recovered();
         self.potential = 0.0;
         self.since_recovery = 0;
-        self.perceive()
+        self.perceive()?;
+        self.rest()
     }
 
     /// Sense, filter, state.
     fn perceive(&mut self) -> Result<()> {
         self.robot.observe(&mut self.observation)?;
-        for (eyes, state) in self.eyes.iter_mut().zip(&mut self.states) {
-            *state = eyes.perceive(&self.observation.image)?;
+        for eyes in &mut self.eyes {
+            eyes.look(&self.observation.image)?;
         }
+        self.compose();
         Ok(())
     }
 
     fn fill_facts(&mut self, action: usize, step: u64) {
-        let grid = &self.eyes[0].grid;
+        let grid = self.eyes[0].grid();
         let facts = self.judge.facts_mut();
-        let twist = self.actions[action];
+        let twist = self.actions.get(action).copied().unwrap_or_default();
         facts.ranges_m.clone_from(&self.observation.scan.ranges_m);
         facts.cells.clear();
         let shares = grid.counts().iter().enumerate();
@@ -197,6 +230,7 @@ impl<R: Robot> Cycle<R> {
         facts.angular_rad_per_s = self.observation.odometry.angular_rad_per_s;
         facts.step = step;
         facts.since_recovery = self.since_recovery;
+        (facts.laser_range_m, facts.laser_view_deg) = (self.laser_range_m, LASER_VIEW_DEG);
     }
 
     /// By rule: what each added in the last step, if it fired.
@@ -238,12 +272,12 @@ impl<R: Robot> Cycle<R> {
     /// The last mask of the script's own filters.
     #[must_use]
     pub fn mask(&self) -> &[u8] {
-        self.eyes[0].chain.mask()
+        self.eyes[0].chain().mask()
     }
 
     /// What each of the script's own filters made of the last image, in order.
     pub fn stages(&self) -> impl Iterator<Item = (&'static Descriptor, &[u8])> {
-        self.eyes[0].chain.stages()
+        self.eyes[0].chain().stages()
     }
 
     /// The map that makes the script's own states.
@@ -255,7 +289,7 @@ impl<R: Robot> Cycle<R> {
     /// The script's own grid, with its last counts.
     #[must_use]
     pub fn grid(&self) -> &Grid {
-        &self.eyes[0].grid
+        self.eyes[0].grid()
     }
 }
 

@@ -8,7 +8,7 @@ use crate::judge::Judge;
 use crate::learner::Mirror;
 use crate::script::{Behaviour, Unread};
 use crate::settings::Settings;
-use crate::state::{Grid, GridMap, StateMap};
+use crate::state::{ComposedMap, Grid, GridMap, MAX_STATES, StateMap, StatePart};
 
 /// A behaviour with its settings and the filters that it may use.
 pub(super) struct Parts<'a> {
@@ -30,7 +30,7 @@ impl Parts<'_> {
             mistakes.take(self.judge());
         }
         if grid && !unread.any_of("actions") && !unread.any_of("learner") {
-            mistakes.take(self.grid().and_then(|grid| self.mirror(&GridMap::new(&self.settings.grid, grid))));
+            mistakes.take(self.state_map().and_then(|map| self.mirror(&*map)));
         }
         chain && grid && !unread.any_of("camera")
     }
@@ -66,6 +66,27 @@ impl Parts<'_> {
             let help = Some("use fewer rows or columns".to_owned());
             self.point(Diagnostic::new("E-GRID", error.0), "grid.rows", "this many rows", help)
         })
+    }
+
+    /// A fresh map from what is perceived to states.
+    pub(super) fn state_map(&self) -> Result<Box<dyn StateMap>> {
+        let view = GridMap::new(&self.settings.grid, self.grid()?);
+        if self.settings.stages.is_empty() {
+            return Ok(Box::new(view));
+        }
+        let labels = self.settings.stages.iter().map(|stage| format!("\"{stage}\"")).collect();
+        let map = ComposedMap::new(vec![
+            StatePart::View { name: "camera".to_owned(), view: 0, map: view },
+            StatePart::Digit { name: "stage".to_owned(), digit: 0, labels },
+        ]);
+        match map.count() {
+            Some(count) if count <= MAX_STATES => Ok(Box::new(map)),
+            _ => {
+                let message = format!("the grid and the stages make more than {MAX_STATES} states");
+                let help = Some("use fewer rows, columns or stages".to_owned());
+                Err(self.point(Diagnostic::new("E-GRID", message), "stages", "too many states", help))
+            }
+        }
     }
 
     /// The mirror that `learner.mirror` asks for.

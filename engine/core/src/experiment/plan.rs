@@ -13,7 +13,7 @@ use crate::random::{Random, Stream};
 use crate::robot::SimulatedRobot;
 use crate::script::{Behaviour, Draft, Measurable, Unread};
 use crate::settings::{SETTINGS, Settings, Value, apply};
-use crate::state::{Grid, GridMap, StateMap};
+use crate::state::{Grid, StateMap};
 use crate::verdict::Success;
 use crate::world::{FloorSquares, Layout};
 
@@ -189,7 +189,7 @@ impl Plan {
     /// # Errors
     /// As [`Plan::grid`].
     pub fn state_map(&self) -> Result<Box<dyn StateMap>> {
-        Ok(Box::new(GridMap::new(&self.settings.grid, self.grid()?)))
+        self.parts().state_map()
     }
 
     /// Fresh eyes: chain, grid and state map.

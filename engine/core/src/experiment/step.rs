@@ -23,6 +23,8 @@ pub struct Step {
     pub next_potential: f64,
     /// What the script says if the attempt ends here: the robot is put somewhere else.
     pub then: Option<Then>,
+    /// The stage that the script wants next, if a rule says one: it may be the present one.
+    pub entered: Option<usize>,
     /// Whether the body touched something.
     pub contact: bool,
 }

@@ -1,6 +1,7 @@
 //! What judging needs of a script.
 
 use super::explain;
+use super::memory::Remembered;
 use super::needs::Needs;
 use super::readings::Part;
 use super::rule::CompiledRule;
@@ -18,6 +19,14 @@ pub(crate) struct CompiledScript {
     pub constants: Scope<'static>,
     pub rules: Vec<CompiledRule>,
     pub needs: Needs,
+    /// What is worked out before the rules, in its order.
+    pub remembered: Vec<Remembered>,
+    /// The names of its stages; none if it has no stages.
+    pub stages: Vec<String>,
+    /// Whether it reads what the wheels counted.
+    pub counts_way: bool,
+    /// Whether it reads the facts of the step before.
+    pub looks_back: bool,
     /// Where the name of `fn reward` stands, if there is one.
     pub reward: Option<Range<usize>>,
     /// What `fn reward` reads.
@@ -27,6 +36,11 @@ pub(crate) struct CompiledScript {
 }
 
 impl CompiledScript {
+    /// Whether anything of it outlasts a step, besides how long conditions have held.
+    pub(crate) fn remembers(&self) -> bool {
+        self.looks_back || self.counts_way || !self.remembered.is_empty() || !self.stages.is_empty()
+    }
+
     /// Checks that every beam that is named exists.
     ///
     /// # Errors

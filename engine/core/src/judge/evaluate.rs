@@ -2,8 +2,9 @@
 
 use super::compiled::{CompiledScript, variable};
 use super::explain;
-use super::expression::{Slot, StepFacts};
+use super::expression::{Slot, StepFacts, Typed};
 use super::facts::Facts;
+use super::memory::{Measure, Memory, Remembered};
 use super::readings::Part;
 use super::rule::{Clause, CompiledRule, ScriptClause};
 use super::running;
@@ -21,6 +22,8 @@ pub struct Judgement {
     pub reward: f64,
     /// What the script says if the attempt ends here.
     pub then: Option<Then>,
+    /// The stage that the script wants next, whether or not it is another one.
+    pub stage: Option<usize>,
 }
 
 /// A script, and what it can read in this step.
@@ -28,6 +31,9 @@ pub struct Judgement {
 pub(crate) struct Present {
     pub compiled: Arc<CompiledScript>,
     pub facts: Arc<Facts>,
+    /// The facts of the step before.
+    pub previous: Arc<Facts>,
+    pub memory: Memory,
     /// What `fn calibrate` returned; nothing before it ran.
     pub calibrated: Option<Arc<Dynamic>>,
     /// The present step as native trees read it.
@@ -36,7 +42,7 @@ pub(crate) struct Present {
 
 impl Present {
     pub(crate) fn inputs(&self) -> StepFacts<'_> {
-        StepFacts { facts: &self.facts, slots: &self.slots }
+        StepFacts { facts: &self.facts, previous: &self.previous, slots: &self.slots, memory: &self.memory }
     }
 
     /// What a rule, or after the last one `fn reward`, reads.
@@ -81,7 +87,9 @@ impl Present {
         for root in &script.roots {
             match root.as_str() {
                 "facts" => drop(scope.push("facts", self.all())),
+                "previous" => drop(scope.push_dynamic("previous", view("previous", &self.previous))),
                 "calibrated" => drop(scope.push_dynamic("calibrated", self.calibration().as_ref().clone())),
+                name if let Some(value) = self.measure(name) => drop(scope.push_dynamic(name, value)),
                 group => match view(group, &self.facts) {
                     unknown if unknown.is_unit() => {}
                     known => drop(scope.push_dynamic(group, known)),
@@ -102,7 +110,33 @@ impl Present {
     }
 
     fn all(&self) -> AllFacts {
-        AllFacts::new(&self.facts, &self.calibration())
+        let measures = self.measures().map(|(index, measure)| self.value_of(index, measure)).collect();
+        AllFacts {
+            facts: Arc::clone(&self.facts),
+            previous: Arc::clone(&self.previous),
+            calibrated: self.calibration(),
+            measures: Arc::new(measures),
+        }
+    }
+
+    fn measures(&self) -> impl Iterator<Item = (usize, &Measure)> {
+        self.compiled.remembered.iter().enumerate().filter_map(|(index, remembered)| match remembered {
+            Remembered::Measure(measure) => Some((index, measure)),
+            _ => None,
+        })
+    }
+
+    fn measure(&self, name: &str) -> Option<Dynamic> {
+        let (index, measure) = self.measures().find(|(_, measure)| measure.name == name)?;
+        Some(self.value_of(index, measure))
+    }
+
+    fn value_of(&self, index: usize, measure: &Measure) -> Dynamic {
+        let value = self.memory.value(index);
+        match measure.typed {
+            Typed::Flag(_) => (value != 0.0).into(),
+            Typed::Number(_) | Typed::Whole(_) => value.into(),
+        }
     }
 
     pub(crate) fn call(&self, function: &str) -> Result<Dynamic> {
@@ -118,11 +152,11 @@ impl Present {
     pub(crate) fn reward(&self, span: &Range<usize>) -> Result<Judgement> {
         let result = self.call("reward")?;
         if let Some(reward) = number(&result) {
-            return Ok(Judgement { reward, then: None });
+            return Ok(Judgement { reward, ..Judgement::default() });
         }
         let kind = explain::plain_kind(result.type_name());
         let read = match result.try_cast::<Map>() {
-            Some(map) => of_map(&map),
+            Some(map) => of_map(&map, &self.compiled.stages),
             None => Err(format!("'fn reward' must return a number or a map, found {kind}")),
         };
         read.map_err(|message| {
@@ -143,8 +177,8 @@ impl Present {
 }
 
 /// What a map that `fn reward` returned says, or what is wrong with it.
-fn of_map(map: &Map) -> std::result::Result<Judgement, String> {
-    const KEYS: [&str; 3] = ["value", "then", "recover"];
+fn of_map(map: &Map, stages: &[String]) -> std::result::Result<Judgement, String> {
+    const KEYS: [&str; 4] = ["value", "then", "recover", "stage"];
     if let Some(key) = map.keys().find(|key| !KEYS.contains(&key.as_str())) {
         let near = nearest_name(key, KEYS).map_or(String::new(), |near| format!("; did you mean '{near}'?"));
         return Err(format!("the map that 'fn reward' returned has a key '{}'{near}", printable(key)));
@@ -168,5 +202,16 @@ fn of_map(map: &Map) -> std::result::Result<Judgement, String> {
             Some(then.ok_or_else(|| format!("'then' in the map that 'fn reward' returned must be one of {words}"))?)
         }
     };
-    Ok(Judgement { reward, then })
+    let stage = match map.get("stage").map(|stage| stage.clone().into_immutable_string()) {
+        None => None,
+        Some(name) => {
+            let known = name.ok().and_then(|name| stages.iter().position(|stage| *stage == name.as_str()));
+            let words = stages.iter().map(|stage| format!("\"{stage}\"")).collect::<Vec<_>>().join(", ");
+            Some(known.ok_or_else(|| match stages {
+                [] => "the script has no stages: write stages([\"first\", \"second\"]);".to_owned(),
+                _ => format!("'stage' in the map that 'fn reward' returned must be one of {words}"),
+            })?)
+        }
+    };
+    Ok(Judgement { reward, then, stage })
 }

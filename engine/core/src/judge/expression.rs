@@ -3,6 +3,7 @@
 use super::fact_columns::Getter;
 use super::fact_table::{Fact, FactId};
 use super::facts::{self, Facts};
+use super::memory::Memory;
 
 /// A part of what `fn calibrate` returned, as rules read it.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,7 +17,19 @@ pub(crate) enum Slot {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StepFacts<'a> {
     pub facts: &'a Facts,
+    /// Those of the step before.
+    pub previous: &'a Facts,
     pub slots: &'a [Slot],
+    pub memory: &'a Memory,
+}
+
+/// Some neighbouring beams of the laser.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum BeamSpan {
+    /// From one number to another, both included.
+    Numbers(usize, usize),
+    /// From one bearing to another, degrees.
+    Bearings(f64, f64),
 }
 
 /// An operator between two numbers.
@@ -54,9 +67,21 @@ pub(crate) enum Number {
     Whole(fn(&Facts) -> i64, FactId),
     Beam(usize),
     Cell(usize, usize),
-    Sector(usize, usize, fn(&[f32]) -> f64),
-    CountBelow(usize, usize, Box<Number>),
+    BeamAt(f64),
+    Sector(BeamSpan, fn(&[f32]) -> f64),
+    CountBelow(BeamSpan, Box<Number>),
+    /// How many beams met anything.
+    Hits(BeamSpan),
     Excess(usize, usize, usize),
+    /// 1 for true, 0 for false.
+    Truth(Box<Flag>),
+    /// The same of the step before.
+    Before(Box<Number>),
+    /// What was worked out before the rules: a measure or a window.
+    Remembered(usize),
+    /// How often a rule has fired, and how long ago.
+    Fired(usize),
+    Since(usize),
     Calibrated(usize),
     Negate(Box<Number>),
     Binary(Arithmetic, Box<[Number; 2]>),
@@ -69,6 +94,11 @@ pub(crate) enum Number {
 pub(crate) enum Flag {
     Constant(bool),
     Fact(fn(&Facts) -> bool),
+    Hit(usize),
+    HitAt(f64),
+    Stage(usize),
+    Before(Box<Flag>),
+    Remembered(usize),
     Compare(Comparison, Box<[Number; 2]>),
     Same(Box<[Flag; 2]>),
     Not(Box<Flag>),
@@ -91,7 +121,7 @@ impl Typed {
             Getter::Number(get) => Some(Self::Number(Number::Fact(get, fact.id))),
             Getter::Whole(get) => Some(Self::Whole(Number::Whole(get, fact.id))),
             Getter::Flag(get) => Some(Self::Flag(Flag::Fact(get))),
-            Getter::Sector(_) | Getter::Call(..) => None,
+            Getter::Sector(_) | Getter::Hits | Getter::Call(..) => None,
         }
     }
 }
@@ -113,10 +143,17 @@ impl Number {
             Self::Whole(get, _) => get(inputs.facts) as f64,
             Self::Beam(beam) => inputs.facts.beam_m(*beam),
             Self::Cell(row, column) => inputs.facts.cell(*row, *column),
-            Self::Sector(from, to, get) => get(inputs.facts.sector_m(*from, *to)),
-            Self::CountBelow(from, to, limit) => {
-                facts::count_below(inputs.facts.sector_m(*from, *to), limit.value(inputs)) as f64
+            Self::BeamAt(bearing) => inputs.facts.beam_m(inputs.facts.beam_at(*bearing)),
+            Self::Sector(span, get) => get(span.ranges_m(inputs.facts)),
+            Self::CountBelow(span, limit) => {
+                facts::count_below(span.ranges_m(inputs.facts), limit.value(inputs)) as f64
             }
+            Self::Hits(span) => facts::count_below(span.ranges_m(inputs.facts), inputs.facts.laser_range_m.1) as f64,
+            Self::Truth(flag) => f64::from(u8::from(flag.holds(inputs))),
+            Self::Before(of) => of.value(inputs.before()),
+            Self::Remembered(index) => inputs.memory.value(*index),
+            Self::Fired(rule) => inputs.memory.fired(*rule),
+            Self::Since(rule) => inputs.memory.since_s(*rule),
             Self::Excess(from, to, slot) => match inputs.slots.get(*slot) {
                 Some(Slot::Numbers(expected)) => facts::excess(inputs.facts.sector_m(*from, *to), expected),
                 _ => f64::NAN,
@@ -138,12 +175,39 @@ impl Flag {
         match self {
             Self::Constant(value) => *value,
             Self::Fact(get) => get(inputs.facts),
+            Self::Hit(beam) => inputs.facts.hit(*beam),
+            Self::HitAt(bearing) => inputs.facts.hit(inputs.facts.beam_at(*bearing)),
+            Self::Stage(stage) => inputs.facts.stage.index == *stage,
+            Self::Before(of) => of.holds(inputs.before()),
+            Self::Remembered(index) => inputs.memory.value(*index) != 0.0,
             Self::Compare(comparison, pair) => comparison.holds(pair[0].value(inputs), pair[1].value(inputs)),
             Self::Same(pair) => pair[0].holds(inputs) == pair[1].holds(inputs),
             Self::Not(of) => !of.holds(inputs),
             Self::And(all) => all.iter().all(|flag| flag.holds(inputs)),
             Self::Or(any) => any.iter().any(|flag| flag.holds(inputs)),
         }
+    }
+}
+
+impl<'a> StepFacts<'a> {
+    /// The same with the facts of the step before.
+    fn before(self) -> Self {
+        Self { facts: self.previous, ..self }
+    }
+}
+
+impl BeamSpan {
+    /// The numbers of its first and its last beam.
+    pub(crate) fn numbers(self, facts: &Facts) -> (usize, usize) {
+        match self {
+            Self::Numbers(from, to) => (from, to),
+            Self::Bearings(from, to) => facts.beams_between(from, to),
+        }
+    }
+
+    fn ranges_m(self, facts: &Facts) -> &[f32] {
+        let (from, to) = self.numbers(facts);
+        facts.sector_m(from, to)
     }
 }
 

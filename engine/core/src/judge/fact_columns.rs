@@ -13,6 +13,8 @@ pub(crate) enum Getter {
     Flag(fn(&Facts) -> bool),
     /// A number that the ranges of a sector give, in metres.
     Sector(fn(&[f32]) -> f64),
+    /// How many beams of a sector met anything.
+    Hits,
     /// With arguments: how it is written, and how many there are. What it does stands in `views` and, for rules that are
     /// compiled, in `expression`.
     Call(&'static str, usize),
@@ -29,6 +31,10 @@ pub enum Unit {
     MetresPerSecond,
     /// Radians per second, positive to the left.
     RadiansPerSecond,
+    /// Degrees, positive to the left.
+    Degrees,
+    /// Seconds.
+    Seconds,
     /// A share, 0 to 1.
     Share,
     /// The number of a beam, from 0.
@@ -98,6 +104,8 @@ impl Unit {
             Self::Metres => "metres",
             Self::MetresPerSecond => "m/s",
             Self::RadiansPerSecond => "rad/s",
+            Self::Degrees => "degrees",
+            Self::Seconds => "seconds",
             Self::Share => "share",
             Self::Beam => "beam",
             Self::Beams => "beams",

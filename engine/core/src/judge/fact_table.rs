@@ -1,9 +1,11 @@
 //! The one list of facts: scripts, checks, near names, the reference page and editors read it.
 
 use super::fact_columns::Beam::{Farthest, Front, Given, Left, Nearest, Right, Without as NoBeam, Worst};
-use super::fact_columns::Getter::{Call, Flag, Number, Sector, Whole};
+use super::fact_columns::Getter::{Call, Flag, Hits, Number, Sector, Whole};
 use super::fact_columns::Reach::{Accident, Actions, Any, Beams, Between, Commanded, Laser, Measured, States, Steps};
-use super::fact_columns::Unit::{Metres, MetresPerSecond, RadiansPerSecond, Share, Without as NoUnit};
+use super::fact_columns::Unit::{
+    Degrees, Metres, MetresPerSecond, RadiansPerSecond, Seconds, Share, Without as NoUnit,
+};
 use super::fact_columns::{Beam, Getter, Reach, Unit};
 use super::facts::{decimal, greatest, least, mean};
 
@@ -35,7 +37,10 @@ pub(crate) const GROUPS: &[(&str, &str)] = &[
     ("action", "The action that the learner has just carried out."),
     ("robot", "The bumper, the tilt switch and the wheel encoders."),
     ("state", "What the learner sees."),
-    ("time", "Steps counted."),
+    ("time", "Steps and seconds counted."),
+    ("odometry", "What the wheels counted since the attempt began: it drifts, since slip and noise are in it."),
+    ("stage", "What the robot is about, in a script with `stages`."),
+    ("previous", "The facts of the step before: `previous.laser.front`, `previous.action.angular`."),
 ];
 
 macro_rules! facts {
@@ -70,10 +75,17 @@ facts! {
     LaserBeams: laser "beams", Unit::Beams, Beams, NoBeam, Whole(|f| f.ranges_m.len() as i64), "How many beams there are.";
     LaserBeam: laser "[", Metres, Laser, Given, Call("laser[beam]", 1), "The range of one beam.";
     LaserSector: laser "sector", NoUnit, Any, NoBeam, Call("laser.sector(from, to)", 2), "The beams `from` to `to`, both included; compared with a number it means its nearest.";
+    LaserAt: laser "at", Metres, Laser, Given, Call("laser.at(degrees)", 1), "The range of the beam nearest to this bearing, the right one of two; positive to the left.";
+    LaserBetween: laser "between", NoUnit, Any, NoBeam, Call("laser.between(from, to)", 2), "The beams from one bearing to another, degrees, positive to the left: as `sector`.";
+    LaserHit: laser "hit", NoUnit, Any, Given, Call("laser.hit(beam)", 1), "Whether that beam met anything nearer than the greatest range.";
+    LaserHitAt: laser "hit_at", NoUnit, Any, Given, Call("laser.hit_at(degrees)", 1), "The same of the beam nearest to this bearing.";
+    LaserMinRange: laser "min_range_m", Metres, Any, NoBeam, Number(|f| f.laser_range_m.0), "The least range that the laser can tell.";
+    LaserMaxRange: laser "max_range_m", Metres, Any, NoBeam, Number(|f| f.laser_range_m.1), "The greatest range: what a beam reads that meets nothing.";
     SectorNearest: sector "nearest", Metres, Laser, Nearest, Sector(|r| decimal(least(r))), "The least range in the sector.";
     SectorFarthest: sector "farthest", Metres, Laser, Farthest, Sector(|r| decimal(greatest(r))), "The greatest range in the sector.";
     SectorMean: sector "mean", Metres, Laser, NoBeam, Sector(mean), "The mean range in the sector.";
     SectorCountBelow: sector "count_below", Unit::Beams, Beams, Nearest, Call("laser.sector(from, to).count_below(limit)", 1), "How many beams of the sector are nearer than `limit` metres.";
+    SectorHits: sector "hits", Unit::Beams, Beams, NoBeam, Hits, "How many beams of the sector met anything nearer than the greatest range.";
     SectorExcess: sector "excess", Metres, Any, Worst, Call("laser.sector(from, to).excess(expected)", 1), "The greatest of range minus expected range; `expected` is an array with one number for each beam.";
     CameraSeen: camera "seen", NoUnit, Any, NoBeam, Flag(|f| f.seen), "Whether any cell of the grid is occupied.";
     CameraCoverage: camera "coverage", Share, Between(0.0, 1.0), NoBeam, Number(|f| f.coverage), "The share of the image that the filter left.";
@@ -88,6 +100,18 @@ facts! {
     StateIndex: state "index", Unit::State, States, NoBeam, Whole(|f| f.state as i64), "The state that the grid was coded into, from 0.";
     TimeStep: time "step", Unit::Steps, Steps, NoBeam, Whole(|f| whole(f.step)), "Steps since learning or the test began.";
     TimeSinceRecovery: time "since_recovery", Unit::Steps, Steps, NoBeam, Whole(|f| whole(f.since_recovery)), "Steps since the last recovery or the start.";
+    TimeAttempt: time "attempt_s", Seconds, Steps, NoBeam, Number(|f| f.attempt_s), "Time since the last recovery or the start.";
+    OdometryDistance: odometry "distance_m", Metres, Steps, NoBeam, Number(|f| f.odometry.distance_m), "Way counted by the wheels, backward too.";
+    OdometryForward: odometry "forward_m", Metres, Any, NoBeam, Number(|f| f.odometry.forward_m), "Way counted by the wheels, backward subtracted.";
+    OdometryTurned: odometry "turned_deg", Degrees, Any, NoBeam, Number(|f| f.odometry.turned_rad.to_degrees()), "Turn counted by the wheels, positive to the left, not wrapped.";
+    OdometryAway: odometry "away_m", Metres, Steps, NoBeam, Number(|f| f.odometry.away_m()), "Straight distance to where the attempt began, by dead reckoning.";
+    OdometryBearing: odometry "bearing_deg", Degrees, Between(-180.0, 180.0), NoBeam, Number(|f| f.odometry.bearing_deg()), "The bearing of that place, positive to the left.";
+    StageIndex: stage "index", NoUnit, Between(0.0, 15.0), NoBeam, Whole(|f| f.stage.index as i64), "The number of the stage, from 0, in the order of `stages`.";
+    StageSteps: stage "steps", Unit::Steps, Steps, NoBeam, Whole(|f| whole(f.stage.steps)), "Steps since it was entered.";
+    StageSeconds: stage "seconds", Seconds, Steps, NoBeam, Number(|f| f.stage.seconds), "Time since it was entered.";
+    StageDistance: stage "distance_m", Metres, Steps, NoBeam, Number(|f| f.stage.distance_m), "Way counted by the wheels since it was entered.";
+    StageTurned: stage "turned_deg", Degrees, Any, NoBeam, Number(|f| f.stage.turned_deg), "Turn counted by the wheels since it was entered, positive to the left.";
+    StageAt: stage "at", NoUnit, Any, NoBeam, Call("stage.at(\"name\")", 1), "Whether it is this stage.";
 }
 
 /// What people write first, and what it is called here.
@@ -127,7 +151,10 @@ impl Fact {
     /// What kind of value it is, in words: `number`, `whole number` or `true or false`.
     pub(crate) const fn kind(&self) -> &'static str {
         match self.get {
-            Getter::Number(_) | Getter::Sector(_) | Getter::Call(..) => "number",
+            Getter::Call(..) if matches!(self.id, FactId::LaserHit | FactId::LaserHitAt | FactId::StageAt) => {
+                "true or false"
+            }
+            Getter::Number(_) | Getter::Sector(_) | Getter::Hits | Getter::Call(..) => "number",
             Getter::Whole(_) => "whole number",
             Getter::Flag(_) => "true or false",
         }

@@ -1,5 +1,7 @@
 //! Everything that a reward may read: measurements of one step, never the truth.
 
+use super::odometry::Odometry;
+
 /// The measurements that rules and `fn reward(facts)` read, refilled in every step.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Facts {
@@ -33,6 +35,34 @@ pub struct Facts {
     pub step: u64,
     /// Steps since the last recovery or the start.
     pub since_recovery: u64,
+    /// The laser's least and greatest range, metres.
+    pub laser_range_m: (f64, f64),
+    /// How far the laser looks from the first beam to the last, degrees.
+    pub laser_view_deg: f64,
+    /// Time since the attempt began, seconds; worked out by the judge, as is all that follows.
+    pub attempt_s: f64,
+    /// What the wheels counted since the attempt began.
+    pub odometry: Odometry,
+    /// The stage, from 0, the steps since it was entered, and what the wheels had counted then.
+    pub stage: StageFacts,
+}
+
+/// `facts.action` where none has been carried out yet: read as -1.
+pub const NO_ACTION: usize = usize::MAX;
+
+/// The stage of a behaviour, as rules read it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct StageFacts {
+    /// Its number, from 0.
+    pub index: usize,
+    /// Steps since it was entered.
+    pub steps: u64,
+    /// The same in seconds.
+    pub seconds: f64,
+    /// Way since then, counted by the wheels, metres.
+    pub distance_m: f64,
+    /// Turn since then, degrees, positive to the left.
+    pub turned_deg: f64,
 }
 
 impl Facts {
@@ -46,6 +76,30 @@ impl Facts {
     #[must_use]
     pub(super) fn sector_m(&self, from: usize, to: usize) -> &[f32] {
         self.ranges_m.get(from..=to).unwrap_or_default()
+    }
+
+    /// The beam whose bearing is nearest to this one, the right one of two; the outermost for a bearing beyond it.
+    #[must_use]
+    pub(super) fn beam_at(&self, bearing_deg: f64) -> usize {
+        let last = self.ranges_m.len().saturating_sub(1);
+        let at = (bearing_deg + 0.5 * self.laser_view_deg) / self.laser_view_deg.max(1e-9) * last as f64;
+        // A beam exactly between two is the right one's, whatever rounding makes of it.
+        (at - 1e-9).round().clamp(0.0, last as f64) as usize
+    }
+
+    /// The beams whose bearings lie between two, both included; nothing if there are none.
+    #[must_use]
+    pub(super) fn beams_between(&self, from_deg: f64, to_deg: f64) -> (usize, usize) {
+        let last = self.ranges_m.len().saturating_sub(1) as f64;
+        let at = |bearing_deg: f64| (bearing_deg + 0.5 * self.laser_view_deg) / self.laser_view_deg.max(1e-9) * last;
+        let (from, to) = ((at(from_deg) - 1e-9).ceil().max(0.0), (at(to_deg) + 1e-9).floor().min(last));
+        if from > to { (1, 0) } else { (from as usize, to as usize) }
+    }
+
+    /// Whether a beam met anything nearer than the greatest range.
+    #[must_use]
+    pub(super) fn hit(&self, beam: usize) -> bool {
+        self.ranges_m.get(beam).is_some_and(|range| decimal(*range) < self.laser_range_m.1)
     }
 
     /// The beam with the least range, the rightmost of equals.

@@ -60,6 +60,19 @@ pub(crate) const FUNCTIONS: &[Function] = &[
     },
 ];
 
+/// Functions that remember, or read what is remembered: only in rules, measures and parts of the state.
+pub(crate) const WINDOWS: &[Function] = &[
+    Function {
+        name: "change",
+        form: "change(x, seconds)",
+        arguments: (1, 2),
+        purpose: "How much a number has changed since so long ago; without a time, since the step before.",
+    },
+    row("average", "average(x, seconds)", 2, "The mean of a number over the last steps of that time."),
+    row("fired", "fired(\"rule\")", 1, "How often a rule has fired since the attempt began."),
+    row("since", "since(\"rule\")", 1, "How long ago a rule fired last, seconds; 1e6 if it has not."),
+];
+
 /// A function of one number.
 pub(crate) type OneArgument = fn(f64) -> f64;
 /// A function of two numbers.

@@ -4,10 +4,13 @@ use super::compiled::CompiledScript;
 use super::evaluate::{Judgement, Present};
 use super::explain;
 use super::expression::Slot;
-use super::facts::Facts;
+use super::facts::{Facts, NO_ACTION, StageFacts};
+use super::memory::Memory;
+use super::odometry::Odometry;
 use super::readings::{self, PartRead};
 use super::views::{number, wrong_length};
 use crate::diagnostic::{Diagnostic, Result};
+use crate::geometry::Twist;
 use rhai::{Dynamic, Map};
 use std::sync::Arc;
 
@@ -21,23 +24,66 @@ pub struct Judge {
     held: Vec<u32>,
     /// For each rule, what a step in which its condition holds builds up: its fixed value over the steps that it needs.
     built_up: Vec<f64>,
+    /// For each rule, what its value is multiplied by: the period, where it is for one second.
+    scale: Vec<f64>,
+    /// For each rule that fires once, whether it has fired and its condition has held ever since.
+    spent: Vec<bool>,
     fired: Vec<Option<f64>>,
+    period_s: f64,
+    stage: StageNow,
+    odometry: Odometry,
+    /// Parts of the state.
+    digits: Vec<usize>,
+    /// Whether the present facts are complete and remembered.
+    is_taken: bool,
+    /// Whether they become those of the step before when others are filled in.
+    is_past: bool,
+}
+
+/// The present stage, and what the wheels had counted when it was entered.
+#[derive(Debug, Clone, Copy, Default)]
+struct StageNow {
+    index: usize,
+    steps: u64,
+    distance_m: f64,
+    turned_rad: f64,
 }
 
 impl Judge {
     pub(crate) fn new(compiled: Arc<CompiledScript>, period_s: f64, beams: usize) -> Self {
         let needed: Vec<u32> = compiled.rules.iter().map(|rule| rule.persistence.steps(period_s)).collect();
         let entries = needed.len() + usize::from(compiled.reward.is_some());
+        let scale: Vec<f64> = compiled.rules.iter().map(|rule| if rule.per_second { period_s } else { 1.0 }).collect();
         let facts = Arc::new(Facts { ranges_m: vec![0.0; beams], ..Facts::default() });
         let calibrated = compiled.calibrate.is_none().then(Arc::default);
         let (held, fired) = (vec![0; needed.len()], vec![None; entries]);
         let built_up = compiled.rules.iter().zip(&needed).map(|(rule, needed)| match rule.fixed_value() {
+            Some(value) if *needed > 1 && rule.per_second => value * period_s / f64::from(*needed),
             Some(value) if *needed > 1 => value / f64::from(*needed),
             _ => 0.0,
         });
         let built_up = built_up.collect();
-        let present = Present { compiled, facts, calibrated, slots: Vec::new() };
-        Self { present, beams, needed, held, built_up, fired }
+        let memory = Memory::new(&compiled.remembered, entries, period_s);
+        let (previous, spent) = (Arc::clone(&facts), vec![false; needed.len()]);
+        let present = Present { compiled, facts, previous, memory, calibrated, slots: Vec::new() };
+        let (stage, odometry) = (StageNow::default(), Odometry::default());
+        let digits = if present.compiled.stages.is_empty() { Vec::new() } else { vec![0] };
+        Self {
+            present,
+            beams,
+            needed,
+            held,
+            built_up,
+            scale,
+            spent,
+            fired,
+            period_s,
+            stage,
+            odometry,
+            digits,
+            is_taken: false,
+            is_past: false,
+        }
     }
 
     /// The facts of the last step.
@@ -48,6 +94,10 @@ impl Judge {
 
     /// The measurements of the present step, to be refilled in place.
     pub fn facts_mut(&mut self) -> &mut Facts {
+        self.is_taken = false;
+        if std::mem::take(&mut self.is_past) && self.present.compiled.looks_back {
+            std::mem::swap(&mut self.present.facts, &mut self.present.previous);
+        }
         // No script value outlives its step, so that this never copies.
         Arc::make_mut(&mut self.present.facts)
     }
@@ -92,27 +142,108 @@ impl Judge {
     /// # Errors
     /// If the script fails or is stopped, or a value is not a finite number: in its line of the script.
     pub fn judge(&mut self) -> Result<Judgement> {
+        self.take()?;
+        self.is_taken = false;
+        let judgement = self.rules()?;
+        if let Some(stage) = judgement.stage {
+            self.enter(stage);
+        }
+        Ok(judgement)
+    }
+
+    /// Completes the present facts, and takes what is remembered of them; once for each step, before the rules.
+    ///
+    /// # Errors
+    /// If the facts do not fit the script.
+    pub fn take(&mut self) -> Result<()> {
         self.check_facts()?;
-        let Self { present, held, needed, fired, .. } = self;
+        if std::mem::replace(&mut self.is_taken, true) {
+            return Ok(());
+        }
+        self.is_past = true;
+        let Self { present, stage, odometry, period_s, .. } = self;
+        let compiled = Arc::clone(&present.compiled);
+        let facts = Arc::make_mut(&mut present.facts);
+        facts.attempt_s = facts.since_recovery as f64 * *period_s;
+        if !compiled.remembers() {
+            present.memory.age();
+            return Ok(());
+        }
+        if compiled.counts_way && facts.action != NO_ACTION {
+            odometry.advance(Twist::new(facts.linear_m_per_s, facts.angular_rad_per_s), *period_s);
+        }
+        if facts.action != NO_ACTION {
+            stage.steps += 1;
+            present.memory.age();
+        }
+        facts.odometry = *odometry;
+        facts.stage = StageFacts {
+            index: stage.index,
+            steps: stage.steps,
+            seconds: stage.steps as f64 * *period_s,
+            distance_m: odometry.distance_m - stage.distance_m,
+            turned_deg: (odometry.turned_rad - stage.turned_rad).to_degrees(),
+        };
+        for (index, remembered) in compiled.remembered.iter().enumerate() {
+            let sample = remembered.sample(present.inputs());
+            present.memory.take(index, sample, remembered);
+        }
+        Ok(())
+    }
+
+    fn enter(&mut self, index: usize) {
+        let Odometry { distance_m, turned_rad, .. } = self.odometry;
+        self.stage = StageNow { index, steps: 0, distance_m, turned_rad };
+        if let Some(digit) = self.digits.last_mut() {
+            *digit = index;
+        }
+    }
+
+    /// The number of the present stage; 0 in a script without stages.
+    #[must_use]
+    pub fn stage(&self) -> usize {
+        self.stage.index
+    }
+
+    /// The parts of the state that the script works out: the stage, if it has stages.
+    #[must_use]
+    pub fn digits(&self) -> &[usize] {
+        &self.digits
+    }
+
+    /// Whether anything of the script outlasts a step, so that the robot at rest must be looked at too.
+    #[must_use]
+    pub fn remembers(&self) -> bool {
+        self.present.compiled.remembers()
+    }
+
+    fn rules(&mut self) -> Result<Judgement> {
+        let Self { present, held, needed, scale, spent, fired, stage, .. } = self;
         fired.fill(None);
         let mut judgement = Judgement::default();
-        let rules = &present.compiled.rules;
+        let compiled = Arc::clone(&present.compiled);
+        let rules = &compiled.rules;
         for (index, rule) in rules.iter().enumerate() {
-            if !present.condition(rule)? {
-                held[index] = 0;
+            if !rule.is_in(stage.index) || !present.condition(rule)? {
+                (held[index], spent[index]) = (0, false);
+                continue;
+            }
+            if spent[index] {
                 continue;
             }
             held[index] += 1;
             if held[index] < needed[index] {
                 continue;
             }
-            held[index] = 0;
-            let value = present.value(rule)?;
+            (held[index], spent[index]) = (0, rule.once);
+            let value = present.value(rule)? * scale[index];
             if !value.is_finite() {
                 return present.not_finite(&rule.shown(), value, rule.value_span.clone()).fail();
             }
             fired[index] = Some(value);
+            present.memory.note_fired(index);
             judgement.reward += value;
+            judgement.stage = judgement.stage.or(rule.to_stage);
             if rule.then.is_some() {
                 judgement.then = rule.then;
                 return Ok(judgement);
@@ -124,6 +255,8 @@ impl Judge {
                 return present.not_finite("'fn reward'", own.reward, span.clone()).fail();
             }
             fired[rules.len()] = Some(own.reward);
+            present.memory.note_fired(rules.len());
+            judgement.stage = judgement.stage.or(own.stage);
             judgement.reward += own.reward;
             judgement.then = own.then;
         }
@@ -162,9 +295,13 @@ impl Judge {
         (self.held.get(rule).copied().unwrap_or(0), self.needed.get(rule).copied().unwrap_or(1))
     }
 
-    /// The robot has been brought back: every persistence starts again.
+    /// The robot has been brought back: every persistence starts again, and all that was remembered is forgotten.
     pub fn recovered(&mut self) {
         self.held.fill(0);
+        self.spent.fill(false);
+        self.present.memory.forget();
+        (self.stage, self.odometry) = (StageNow::default(), Odometry::default());
+        self.digits.fill(0);
     }
 
     /// What the rules that must hold for a time have built up: the sum of each one's fixed value times the share of the time

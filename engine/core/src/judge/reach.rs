@@ -1,6 +1,6 @@
 //! Whether a rule can fire at all: intervals through its condition.
 
-use super::expression::{Arithmetic, Comparison, Flag, Number};
+use super::expression::{Arithmetic, BeamSpan, Comparison, Flag, Number};
 use super::fact_columns::Reach;
 use super::fact_table::FactId;
 use super::facts::{Facts, decimal};
@@ -114,7 +114,8 @@ fn interval(number: &Number, limits: &Limits) -> Interval {
         Number::Whole(_, fact) => fact.fact().reach.bounds(),
         Number::CountBelow(..) => FactId::SectorCountBelow.fact().reach.bounds(),
         Number::Beam(beam) => limits.of_beams(*beam, *beam, |ranges_m| decimal(ranges_m[0])),
-        Number::Sector(from, to, of) => limits.of_beams(*from, *to, of),
+        Number::Sector(BeamSpan::Numbers(from, to), of) => limits.of_beams(*from, *to, of),
+        Number::Before(of) => interval(of, limits),
         Number::Cell(..) => FactId::CameraCell.fact().reach.bounds(),
         Number::Negate(of) => {
             let (low, high) = interval(of, limits);

@@ -1,6 +1,6 @@
 //! What a condition reads, part by part: so that a reward can name the fact and the beam behind it.
 
-use super::expression::{Flag, Slot, StepFacts, Typed};
+use super::expression::{BeamSpan, Flag, Slot, StepFacts, Typed};
 use super::fact_columns::Beam;
 use super::fact_table::{Fact, FactId};
 use super::facts::{decimal, greatest, least};
@@ -57,13 +57,14 @@ pub(crate) enum BeamSought {
     One(usize),
     Middle,
     Last,
-    Least(usize, usize),
-    Greatest(usize, usize),
+    Given(f64),
+    Least(BeamSpan),
+    Greatest(BeamSpan),
     Worst(usize, usize, usize),
 }
 
 /// From the first beam to the last.
-pub(crate) const ALL: (usize, usize) = (0, usize::MAX);
+pub(crate) const ALL: BeamSpan = BeamSpan::Numbers(0, usize::MAX);
 
 impl Part {
     /// What it read.
@@ -104,21 +105,22 @@ impl Reading {
 
 impl BeamSought {
     /// For a fact of the beams `from` to `to`; what an expression gives too (a beam, expected ranges) is not known here.
-    pub(crate) const fn of(beam: Beam, (from, to): (usize, usize)) -> Self {
+    pub(crate) const fn of(beam: Beam, span: BeamSpan) -> Self {
         match beam {
             Beam::Without | Beam::Given | Beam::Worst => Self::Nowhere,
             Beam::Right => Self::One(0),
             Beam::Front => Self::Middle,
             Beam::Left => Self::Last,
-            Beam::Nearest => Self::Least(from, to),
-            Beam::Farthest => Self::Greatest(from, to),
+            Beam::Nearest => Self::Least(span),
+            Beam::Farthest => Self::Greatest(span),
         }
     }
 
     fn beam(self, inputs: StepFacts<'_>) -> Option<usize> {
         let ranges_m = &inputs.facts.ranges_m;
         let last = ranges_m.len().checked_sub(1)?;
-        let find = |from: usize, to: usize, choose: fn(&[f32]) -> f32| {
+        let find = |span: BeamSpan, choose: fn(&[f32]) -> f32| {
+            let (from, to) = span.numbers(inputs.facts);
             let sector = ranges_m.get(from..=to.min(last))?;
             let wanted = choose(sector);
             sector.iter().position(|range| *range == wanted).map(|beam| from + beam)
@@ -128,8 +130,9 @@ impl BeamSought {
             Self::One(beam) => Some(beam),
             Self::Middle => Some(ranges_m.len() / 2),
             Self::Last => Some(last),
-            Self::Least(from, to) => find(from, to, least),
-            Self::Greatest(from, to) => find(from, to, greatest),
+            Self::Given(bearing_deg) => Some(inputs.facts.beam_at(bearing_deg)),
+            Self::Least(span) => find(span, least),
+            Self::Greatest(span) => find(span, greatest),
             Self::Worst(from, to, slot) => {
                 let Some(Slot::Numbers(expected)) = inputs.slots.get(slot) else { return None };
                 let sector = inputs.facts.sector_m(from, to).iter().zip(expected).enumerate();

@@ -64,6 +64,14 @@ pub(crate) struct CompiledRule {
     pub value: Clause<Number>,
     pub value_span: Range<usize>,
     pub then: Option<Then>,
+    /// The stages in which it is judged, a bit for each; nothing for all.
+    pub stages: Option<u32>,
+    /// Whether it fires once each time its condition comes true.
+    pub once: bool,
+    /// Whether its value is for one second, not for one step.
+    pub per_second: bool,
+    /// The stage that it leads to.
+    pub to_stage: Option<usize>,
     /// What the condition reads.
     pub parts: Vec<Part>,
 }
@@ -75,6 +83,11 @@ impl CompiledRule {
             Clause::Native(Number::Constant(value)) => Some(value),
             _ => None,
         }
+    }
+
+    /// Whether it is judged in a stage.
+    pub(crate) fn is_in(&self, stage: usize) -> bool {
+        self.stages.is_none_or(|stages| stages & (1 << stage) != 0)
     }
 
     /// `rule "too close"`, safe for a terminal.

@@ -37,7 +37,9 @@ macro_rules! views {
         fn register_groups(engine: &mut Engine) {
             engine.register_type_with_name::<AllFacts>("facts");
             engine.register_get("calibrated", |all: &mut AllFacts| Dynamic::clone(&all.calibrated));
+            engine.register_get("previous", |all: &mut AllFacts| PreviousView::new(Arc::clone(&all.previous)));
             $(register_group::<$name>(engine);)*
+            $(engine.register_get($group, |before: &mut PreviousView| $name::new(Arc::clone(&before.0)));)*
         }
 
         /// The group of this name over these measurements, as a script's value.
@@ -63,20 +65,35 @@ views! {
     StateView "state",
     /// `time`
     TimeView "time",
+    /// `odometry`
+    OdometryView "odometry",
+    /// `stage`
+    StageView "stage",
+    /// `previous`, whose groups are those of the step before
+    PreviousView "previous",
 }
 
-/// `facts`: all groups, and what `fn calibrate` returned.
+/// `facts`: all groups, the step before, what `fn calibrate` returned, and the measures.
 #[derive(Clone)]
 pub(crate) struct AllFacts {
-    facts: Arc<Facts>,
-    calibrated: Arc<Dynamic>,
+    pub facts: Arc<Facts>,
+    pub previous: Arc<Facts>,
+    pub calibrated: Arc<Dynamic>,
+    /// In the order of the script.
+    pub measures: Arc<Vec<Dynamic>>,
 }
 
-impl AllFacts {
-    /// The handle on these measurements.
-    pub(crate) fn new(facts: &Arc<Facts>, calibrated: &Arc<Dynamic>) -> Self {
-        Self { facts: Arc::clone(facts), calibrated: Arc::clone(calibrated) }
+/// Makes the measures of a script known to its functions, as `facts.NAME`, and the names of its stages to all of it.
+pub(crate) fn register_own(engine: &mut Engine, measures: &[&str], stages: &[String]) {
+    for (index, name) in measures.iter().enumerate() {
+        engine.register_get(*name, move |all: &mut AllFacts| all.measures.get(index).cloned().unwrap_or_default());
     }
+    let stages = stages.to_vec();
+    engine.register_fn("at", move |stage: &mut StageView, name: &str| -> Evaluated<bool> {
+        let index = stages.iter().position(|stage| stage == name);
+        let index = index.ok_or_else(|| fault(format!("there is no stage \"{name}\"")))?;
+        Ok(stage.0.stage.index == index)
+    });
 }
 
 /// `laser.sector(from, to)`.
@@ -110,13 +127,15 @@ pub(crate) fn register(engine: &mut Engine) {
 
 fn register_group<T: FactView>(engine: &mut Engine) {
     engine.register_type_with_name::<T>(T::GROUP);
-    engine.register_get(T::GROUP, |all: &mut AllFacts| T::new(Arc::clone(&all.facts)));
+    if T::GROUP != PreviousView::GROUP {
+        engine.register_get(T::GROUP, |all: &mut AllFacts| T::new(Arc::clone(&all.facts)));
+    }
     for fact in FACTS.iter().filter(|fact| fact.group == T::GROUP) {
         match fact.get {
             Getter::Number(get) => engine.register_get(fact.key, move |view: &mut T| get(view.facts())),
             Getter::Whole(get) => engine.register_get(fact.key, move |view: &mut T| get(view.facts())),
             Getter::Flag(get) => engine.register_get(fact.key, move |view: &mut T| get(view.facts())),
-            Getter::Sector(_) | Getter::Call(..) => continue,
+            Getter::Sector(_) | Getter::Hits | Getter::Call(..) => continue,
         };
     }
 }
@@ -134,6 +153,24 @@ fn register_laser(engine: &mut Engine) {
         }
         Ok(SectorView { facts: Arc::clone(&laser.0), from, to })
     });
+    engine.register_fn("at", |laser: &mut LaserView, bearing_deg: f64| laser.0.beam_m(laser.0.beam_at(bearing_deg)));
+    engine.register_fn("at", |laser: &mut LaserView, bearing_deg: i64| {
+        laser.0.beam_m(laser.0.beam_at(bearing_deg as f64))
+    });
+    engine.register_fn("between", |laser: &mut LaserView, from: Dynamic, to: Dynamic| -> Evaluated<SectorView> {
+        let (Some(from), Some(to)) = (number(&from), number(&to)) else {
+            return Err(fault("'between' needs two bearings in degrees".to_owned()));
+        };
+        let (from, to) = laser.0.beams_between(from, to);
+        Ok(SectorView { facts: Arc::clone(&laser.0), from, to })
+    });
+    engine.register_fn("hit", |laser: &mut LaserView, beam: i64| -> Evaluated<bool> {
+        Ok(laser.0.hit(index(beam, laser.0.ranges_m.len(), "beam numbers")?))
+    });
+    engine.register_fn("hit_at", |laser: &mut LaserView, bearing_deg: f64| laser.0.hit(laser.0.beam_at(bearing_deg)));
+    engine.register_fn("hit_at", |laser: &mut LaserView, bearing_deg: i64| {
+        laser.0.hit(laser.0.beam_at(bearing_deg as f64))
+    });
     compare(engine, |laser: &LaserView| facts::decimal(facts::least(&laser.0.ranges_m)));
 }
 
@@ -144,6 +181,7 @@ fn register_sector(engine: &mut Engine) {
             engine.register_get(fact.key, move |sector: &mut SectorView| get(sector.ranges()));
         }
     }
+    engine.register_get("hits", |sector: &mut SectorView| below(sector, sector.facts.laser_range_m.1));
     engine.register_fn("count_below", |sector: &mut SectorView, limit_m: f64| below(sector, limit_m));
     engine.register_fn("count_below", |sector: &mut SectorView, limit_m: i64| below(sector, limit_m as f64));
     engine.register_fn("excess", |sector: &mut SectorView, expected: rhai::Array| -> Evaluated<f64> {

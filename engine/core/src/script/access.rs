@@ -70,12 +70,14 @@ pub(super) fn fact_of(group: &str, links: &[Link<'_>]) -> Option<&'static Fact> 
     match (group, links) {
         ("laser", []) => Some(FactId::LaserNearest.fact()),
         ("laser", [Link::Index(_)]) => Some(FactId::LaserBeam.fact()),
-        ("laser", [Link::Call(sector, _), rest @ ..]) if sector.name == "sector" => match rest {
-            [] => Some(FactId::SectorNearest.fact()),
-            [Link::Property(key, _)] => value("sector", key),
-            [Link::Call(of_sector, _)] => call("sector", &of_sector.name),
-            _ => None,
-        },
+        ("laser", [Link::Call(sector, _), rest @ ..]) if matches!(sector.name.as_str(), "sector" | "between") => {
+            match rest {
+                [] => Some(FactId::SectorNearest.fact()),
+                [Link::Property(key, _)] => value("sector", key),
+                [Link::Call(of_sector, _)] => call("sector", &of_sector.name),
+                _ => None,
+            }
+        }
         (_, [Link::Property(key, _)]) => value(group, key),
         (_, [Link::Call(of_group, _)]) => call(group, &of_group.name),
         _ => None,

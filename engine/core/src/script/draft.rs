@@ -2,22 +2,23 @@
 
 use super::behaviour::Behaviour;
 use super::bodies::outline_of;
-use super::compile::Compiler;
+use super::compile::{Compiler, Vocabulary};
 use super::outline::ScriptOutline;
-use super::rules::rules;
+use super::rules::{rules, stage};
 use super::setup::{self, Log, SetUp};
 use super::source::{self, Code};
 use super::spoilt::Spoilt;
-use super::tree::tree;
+use super::syntax::{Forms, written_rules};
+use super::tree::{Tree, tree};
 use super::unread::Unread;
-use super::{names, parts, rehearsal, success, syntax, top_level, types};
+use super::{measures, names, parts, rehearsal, success, syntax, top_level, types};
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, printable};
 use crate::judge::compiled::CompiledScript;
 use crate::judge::needs::Needs;
 use crate::judge::sandbox;
+use crate::judge::views::register_own;
 use crate::settings::Settings;
 use rhai::{AST, Module, Scope};
-use std::ops::Range;
 use std::path::Path;
 
 /// A script as far as it is understood. What a mistake keeps from being understood is not in it.
@@ -68,7 +69,7 @@ impl Draft {
         mistakes: &mut Mistakes,
     ) -> std::result::Result<(Behaviour, Unread), Diagnostic> {
         let mut engine = sandbox::engine();
-        syntax::register(&mut engine, success::is_asked_for(code));
+        syntax::register(&mut engine, Forms::of(code));
         let log = Log::register(&mut engine);
         let tree = tree(&mut engine, code, mistakes)?;
         let mut needs = Needs::default();
@@ -89,7 +90,12 @@ impl Draft {
         let SetUp { settings, places, mut unread } = setup::finish(&log, code, &tree.ast, mistakes);
         calls.into_iter().for_each(|call| unread.all_of(call));
         engine.register_global_module(constants_module(&constants).into());
-        let rules = rules(code, &tree.ast, &constants, &mut needs, &spoilt, mistakes);
+        let mut script = vocabulary(&tree, &settings);
+        check_stages(code, &needs, &script.stages, mistakes);
+        measures::check_windows(code, &tree.ast, &script.rules, &script.own, mistakes);
+        let mut compiler = Compiler { constants: &constants, needs: &mut needs, script: &mut script };
+        measures::measures(code, &tree.ast, &tree.known.variables, &mut compiler, &spoilt, mistakes);
+        let rules = rules(code, &tree.ast, &mut compiler, &spoilt, mistakes);
         let rule_names: Vec<&str> = rules
             .iter()
             .map(|rule| rule.text.name.as_str())
@@ -101,16 +107,33 @@ impl Draft {
         if rules.is_empty() && reward.is_none() && mistakes.is_empty() {
             return Err(empty(code));
         }
-        let parts = |span: &Range<usize>, needs: &mut Needs| {
-            parts::function_parts(code, &tree.ast, span, &mut Compiler { constants: &constants, needs })
-        };
-        let reward_parts = reward.as_ref().map_or_else(Vec::new, |span| parts(span, &mut needs));
+        let mut compiler = Compiler { constants: &constants, needs: &mut needs, script: &mut script };
+        let reward_parts =
+            reward.as_ref().map_or_else(Vec::new, |span| parts::function_parts(code, &tree.ast, span, &mut compiler));
+        let Vocabulary { remembered, stages, .. } = script;
+        register_own(&mut engine, &tree.known.measures.iter().map(String::as_str).collect::<Vec<_>>(), &stages);
         let outline = match mistakes.is_empty() {
             true => outline_of(code, &tree.ast, &constants, &rules),
             false => ScriptOutline::default(),
         };
         let (source, ast) = (code.source.clone(), tree.ast);
-        let compiled = CompiledScript { source, engine, ast, constants, rules, needs, reward, reward_parts, calibrate };
+        let reads = |word: &str| code.names(word) && !code.defines(word);
+        let (counts_way, looks_back) = (reads("odometry") || reads("stage"), reads("previous"));
+        let compiled = CompiledScript {
+            source,
+            engine,
+            ast,
+            constants,
+            rules,
+            needs,
+            remembered,
+            stages,
+            counts_way,
+            looks_back,
+            reward,
+            reward_parts,
+            calibrate,
+        };
         let behaviour = Behaviour::new(name, settings, places, outline, compiled).with_success(success);
         check_with_settings(&behaviour, &mut spoilt, &unread, mistakes)?;
         Ok((behaviour, unread))
@@ -161,6 +184,25 @@ fn check_with_settings(
     spoilt.spread(mistakes);
     let judge = behaviour.unchecked_judge(run.period_s, beams);
     rehearsal::rehearse(judge, behaviour.settings(), spoilt, mistakes).map_err(|last| *last)
+}
+
+/// What a script names besides facts and constants.
+fn vocabulary(tree: &Tree, settings: &Settings) -> Vocabulary {
+    let written = written_rules(tree.ast.statements());
+    let rules = written.iter().map(|rule| rule.name.to_owned());
+    Vocabulary {
+        rules: rules.chain(has_function(&tree.ast, "reward").then(|| "reward".to_owned())).collect(),
+        stages: settings.stages.clone(),
+        own: tree.ast.iter_functions().map(|function| function.name.to_owned()).collect(),
+        ..Vocabulary::default()
+    }
+}
+
+/// Checks that every stage that is named exists.
+fn check_stages(code: &Code, needs: &Needs, stages: &[String], mistakes: &mut Mistakes) {
+    for (name, at) in &needs.stages {
+        stage(code, (name, *at), stages, mistakes);
+    }
 }
 
 fn constants_module(constants: &Scope<'_>) -> Module {

@@ -9,6 +9,7 @@ mod behaviour;
 mod bodies;
 mod compile;
 mod draft;
+mod measures;
 mod names;
 mod outline;
 mod parts;

@@ -4,17 +4,24 @@ use super::access::{Access, Link};
 use super::setup_table::SETUP;
 use super::source::Code;
 use super::spoilt::Spoilt;
-use super::success;
-use super::syntax::is_success_expr;
+use super::syntax::{Forms, is_measure_expr, is_success_expr};
 use super::tree::Tree;
 use super::unknown::Unknown;
 use crate::diagnostic::{Diagnostic, Mistakes};
 use crate::judge::explain;
 use crate::judge::fact_table::{self, Fact, GROUPS, is_group, names_in, takes_arguments, value};
-use crate::judge::functions::FUNCTIONS;
+use crate::judge::functions::{FUNCTIONS, WINDOWS};
 use crate::judge::needs::Needs;
 use rhai::{AST, ASTNode, Expr, FnCallExpr, Position, Stmt};
 use std::collections::BTreeSet;
+
+/// The groups and set-up calls of the first version of the language: scripts never could use these names for their own things.
+/// What came later is the script's own where it defines it.
+const FIRST_GROUPS: [&str; 6] = ["laser", "camera", "action", "robot", "state", "time"];
+const FIRST_SETUP: [&str; 13] = [
+    "world", "filter", "actions", "run", "robot", "camera", "laser", "grid", "learner", "recovery", "movers", "policy",
+    "combine",
+];
 
 /// Checks the names of a script: adds every mistake to `mistakes`, and what it finds of beams and cells to `needs`.
 /// Gives the names that nothing defines and that look like no other name.
@@ -34,10 +41,23 @@ pub(super) fn check_names(
     let calibrates = own.iter().any(|(name, _)| name == "calibrate") || spoilt.has("calibrate");
     let variables = tree.refused.is_some().then(|| tree.known.variables.iter().map(String::as_str).collect());
     let unknown = Unknown::default();
-    let figures = success::is_asked_for(code);
+    let figures = Forms::of(code).success;
     let in_function = false;
-    let mut names =
-        Names { code, own, facts_names, variables, spoilt, calibrates, figures, in_function, needs, unknown, mistakes };
+    let measures = &tree.known.measures;
+    let mut names = Names {
+        code,
+        own,
+        measures,
+        facts_names,
+        variables,
+        spoilt,
+        calibrates,
+        figures,
+        in_function,
+        needs,
+        unknown,
+        mistakes,
+    };
     names.own_functions();
     names.walk(&ast.clone_statements_only());
     names.in_function = true;
@@ -49,6 +69,8 @@ pub(super) fn check_names(
 struct Names<'a> {
     code: &'a Code,
     own: Vec<(String, usize)>,
+    /// Names of measures, read as facts are.
+    measures: &'a [String],
     facts_names: Vec<String>,
     /// Variables at the top level; nothing if the parser knows every variable.
     variables: Option<BTreeSet<&'a str>>,
@@ -81,7 +103,7 @@ impl Names<'_> {
         for (name, arguments) in self.own.clone() {
             let span = || self.code.function(&name).unwrap_or(0..0);
             let at = |code, message: String| Diagnostic::new(code, message);
-            let taken = FUNCTIONS.iter().any(|row| row.name == name) || SETUP.iter().any(|row| row.name == name);
+            let taken = FUNCTIONS.iter().any(|row| row.name == name) || FIRST_SETUP.contains(&name.as_str());
             if taken {
                 let wrong = at("E-SCRIPT-NAME", format!("'{name}' is the name of one of the engine's functions"));
                 self.mistakes.add(wrong.at(&self.code.source, span(), "defined here").help("choose another name"));
@@ -107,7 +129,12 @@ impl Names<'_> {
         let success = path.iter().any(|node| matches!(node, ASTNode::Expr(expr) if is_success_expr(expr)));
         match path.last() {
             Some(ASTNode::Expr(Expr::Custom(_, position))) if misplaced => {
-                let what = if success { "a condition of success" } else { "a rule" };
+                let measure = matches!(path.last(), Some(ASTNode::Expr(expr)) if is_measure_expr(expr));
+                let what = match (success, measure) {
+                    (true, _) => "a condition of success",
+                    (_, true) => "a measure",
+                    _ => "a rule",
+                };
                 let message = format!("{what} stands by itself, not inside a function, a loop or a condition");
                 self.mistake(
                     "E-SCRIPT-RULE",
@@ -133,7 +160,7 @@ impl Names<'_> {
     }
 
     fn defined(&mut self, name: &str, position: Position) {
-        if is_group(name) || matches!(name, "facts" | "calibrated") {
+        if FIRST_GROUPS.contains(&name) || matches!(name, "facts" | "calibrated") {
             let message = format!("'{name}' is the name of facts");
             self.mistake("E-SCRIPT-NAME", position, message, "defined here", "choose another name");
         }
@@ -141,7 +168,7 @@ impl Names<'_> {
 
     fn variable(&mut self, expr: &Expr, in_rule: bool) {
         let Some(Access { root, is_local: false, position, .. }) = Access::of(expr) else { return };
-        let is_group = is_group(root);
+        let is_group = is_group(root) && !self.code.defines(root) || self.measures.iter().any(|name| name == root);
         if !is_group && !matches!(root, "facts" | "calibrated") {
             if matches!(root, "test" | "untrained") && self.figures {
                 let message = format!("'{root}' can be read only in a success: nothing is tested yet");
@@ -177,7 +204,8 @@ impl Names<'_> {
             self.text_compared(call, position);
             return self.whole_division(call, position);
         }
-        if SETUP.iter().any(|row| row.name == name) && receiver == 0 {
+        let is_own = self.own.iter().any(|row| row.0 == name);
+        if SETUP.iter().any(|row| row.name == name) && receiver == 0 && !is_own {
             if self.in_function || in_rule {
                 let message = format!("'{name}' sets up: it cannot be used here");
                 self.mistake("E-SCRIPT-SETTING", position, message, "too late", "move it to the top of the script");
@@ -185,6 +213,9 @@ impl Names<'_> {
             return;
         }
         let own: Vec<usize> = self.own.iter().filter(|row| row.0 == name).map(|row| row.1).collect();
+        if !is_own && receiver == 0 && WINDOWS.iter().any(|row| row.name == name) {
+            return self.window(name, found, position, in_rule);
+        }
         let wanted = FUNCTIONS.iter().find(|row| row.name == name);
         let of_facts = takes_arguments(name) && receiver == 1;
         if of_facts || own.contains(&found) {
@@ -200,6 +231,19 @@ impl Names<'_> {
             self.mistake("E-SCRIPT-NAME", position, message, "here", "look at its definition");
         } else if !self.spoilt.has(name) {
             self.unknown.function(name, explain::offset(&self.code.source, position));
+        }
+    }
+
+    /// `change`, `average`, `fired`, `since`: where they may stand, and with how many arguments.
+    fn window(&mut self, name: &str, found: usize, position: Position, in_rule: bool) {
+        let Some(row) = WINDOWS.iter().find(|row| row.name == name) else { return };
+        if self.in_function || !in_rule {
+            let message = format!("'{name}' can be used only in rules and measures");
+            let help = format!("name it outside of the function: measure m = {}; and read facts.m here", row.form);
+            self.mistake("E-SCRIPT-WINDOW", position, message, "not here", help);
+        } else if !(row.arguments.0..=row.arguments.1).contains(&found) {
+            let message = format!("'{name}' takes another number of arguments");
+            self.mistake("E-SCRIPT-NAME", position, message, "here", format!("write {}", row.form));
         }
     }
 
@@ -242,6 +286,7 @@ impl Names<'_> {
                 if let Some(Link::Property(group, position)) = access.links.first().copied()
                     && group != "calibrated"
                     && !is_group(group)
+                    && !self.measures.iter().any(|name| name == group)
                 {
                     return self.no_group(group, position);
                 }
@@ -270,10 +315,21 @@ impl Names<'_> {
 
     fn group(&mut self, group: &str, links: &[Link<'_>]) {
         match links {
+            [Link::Property(inner, position), rest @ ..] if group == "previous" => match *inner {
+                "previous" | "stage" => {
+                    let message = format!("'{inner}' has no previous value");
+                    let help = "name it: measure m = ...; change(m) is how much it changed since the step before";
+                    self.mistake("E-SCRIPT-FACT", *position, message, "not known", help);
+                }
+                inner if is_group(inner) => self.group(inner, rest),
+                inner => self.no_group(inner, *position),
+            },
+            [] if group == "previous" => {}
+            [Link::Call(call, position), ..] if group == "stage" && call.name == "at" => self.stage(call, *position),
             [Link::Index(beam), ..] if group == "laser" => self.beam(beam),
             [Link::Call(call, position), rest @ ..] => {
                 self.call_of_facts(group, call, *position);
-                if let ("sector", [next, ..]) = (call.name.as_str(), rest) {
+                if let ("sector" | "between", [next, ..]) = (call.name.as_str(), rest) {
                     self.sector(next);
                 }
             }
@@ -329,6 +385,14 @@ impl Names<'_> {
             }
             Some(_) => {}
         }
+    }
+
+    fn stage(&mut self, call: &FnCallExpr, position: Position) {
+        let [Expr::StringConstant(name, at)] = call.args.as_slice() else {
+            let message = "'at' needs the name of a stage".to_owned();
+            return self.mistake("E-SCRIPT-STAGE", position, message, "here", "write stage.at(\"name\")");
+        };
+        self.needs.stages.push((name.to_string(), *at));
     }
 
     fn beam(&mut self, beam: &Expr) {

@@ -5,9 +5,10 @@ use super::compile::Compiler;
 use super::positions::{access_end, body_end, first, part_end};
 use super::source::Code;
 use crate::judge::explain::offset;
-use crate::judge::expression::Typed;
+use crate::judge::expression::{BeamSpan, Typed};
 use crate::judge::fact_columns::Beam;
-use crate::judge::fact_table::{FACTS, Fact, FactId};
+use crate::judge::fact_table::{FACTS, Fact, FactId, is_group};
+use crate::judge::functions::WINDOWS;
 use crate::judge::readings::{ALL, BeamSought, Part, Reading};
 use rhai::{AST, ASTNode, Expr};
 use std::ops::Range;
@@ -80,6 +81,14 @@ fn readings(code: &Code, expr: &Expr, compiler: &mut Compiler<'_>) -> Vec<Readin
 
 /// Adds what an expression reads, with where it begins, if it is one fact.
 fn collect(code: &Code, expr: &Expr, compiler: &mut Compiler<'_>, found: &mut Vec<(usize, Reading)>) {
+    if let Expr::FnCall(call, position) = expr
+        && WINDOWS.iter().any(|row| row.name == call.name)
+        && let Some(typed) = compiler.expression(expr)
+    {
+        let start = offset(&code.source, *position);
+        let name = code.source.text[start..access_end(code, start)].to_owned();
+        return found.push((start, Reading { name, typed, id: None, look: BeamSought::Nowhere }));
+    }
     let Some(access) = Access::of(expr) else { return };
     let start = offset(&code.source, access.position);
     // The outermost of a chain comes first; its parts begin where it begins.
@@ -96,19 +105,31 @@ fn collect(code: &Code, expr: &Expr, compiler: &mut Compiler<'_>, found: &mut Ve
 /// Which fact a chain reads, nothing for what was calibrated; and which beam to name with it.
 fn describe(access: &Access<'_>, compiler: &mut Compiler<'_>) -> Option<(Option<FactId>, BeamSought)> {
     let (group, links) = access.group()?;
-    if group == "calibrated" {
+    let (group, links) = match links {
+        // Of the step before, whose beams are no longer to be seen.
+        [Link::Property(group, _), rest @ ..] if access.root == "previous" => {
+            return fact_of(group, rest).map(|fact| (Some(fact.id), BeamSought::Nowhere));
+        }
+        links => (group, links),
+    };
+    if links.is_empty() && !is_group(group) || group == "calibrated" {
         return Some((None, BeamSought::Nowhere));
     }
     let fact = fact_of(group, links)?;
     let look = match (fact.beam, links) {
         (Beam::Given, [Link::Index(beam)]) => BeamSought::One(compiler.beam(beam)?),
+        (Beam::Given, [Link::Call(call, _)]) if group == "laser" => match (call.name.as_str(), call.args.as_slice()) {
+            ("hit", [of]) => BeamSought::One(compiler.beam(of)?),
+            (_, [of]) => BeamSought::Given(compiler.constant(of)?),
+            _ => BeamSought::Nowhere,
+        },
         (beam, [Link::Call(call, _), rest @ ..]) if group == "laser" => {
-            let (from, to) = compiler.sector(call)?;
+            let span = compiler.sector(call)?;
             match (beam, rest) {
-                (Beam::Worst, [Link::Call(call, _)]) => compiler
+                (Beam::Worst, [Link::Call(call, _)]) if let BeamSpan::Numbers(from, to) = span => compiler
                     .expected(from, to, call)
                     .map_or(BeamSought::Nowhere, |slot| BeamSought::Worst(from, to, slot)),
-                _ => BeamSought::of(beam, (from, to)),
+                _ => BeamSought::of(beam, span),
             }
         }
         (beam, _) => BeamSought::of(beam, ALL),

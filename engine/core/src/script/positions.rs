@@ -54,7 +54,7 @@ pub(super) fn span(code: &Code, expr: &Expr) -> Range<usize> {
 }
 
 fn ends_expression(rest: &str) -> bool {
-    ["for", "then", "steps", "step", "seconds", "second"].iter().any(|word| {
+    ["for", "once", "per", "then", "steps", "step", "seconds", "second"].iter().any(|word| {
         rest.strip_prefix(word).is_some_and(|tail| !tail.starts_with(|c: char| c.is_alphanumeric() || c == '_'))
     })
 }
@@ -70,7 +70,9 @@ pub(super) fn line_end(code: &Code, start: usize) -> usize {
             ')' | ']' => depth -= 1,
             _ => {}
         }
-        let stop = ["&&", "||", "=>", ";", ",", "{", " for ", " then "].iter().any(|stop| rest.starts_with(stop));
+        let stop = ["&&", "||", "=>", ";", ",", "{", " for ", " then ", " once ", " per "]
+            .iter()
+            .any(|stop| rest.starts_with(stop));
         if depth < 0 || depth == 0 && stop {
             return start + tail[..index].trim_end().len();
         }
@@ -85,7 +87,9 @@ pub(super) fn part_end(code: &Code, start: usize) -> usize {
         let rest = tail.strip_prefix(char::is_whitespace).and_then(|tail| tail.trim_start().strip_prefix(word));
         rest.is_some_and(|rest| rest.starts_with(char::is_whitespace))
     };
-    end(code, start, |tail| stops.iter().any(|stop| tail.starts_with(stop)) || keyword(tail, "for"))
+    end(code, start, |tail| {
+        stops.iter().any(|stop| tail.starts_with(stop)) || keyword(tail, "for") || keyword(tail, "once")
+    })
 }
 
 /// Where a fact with its path ends.

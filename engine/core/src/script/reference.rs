@@ -4,7 +4,7 @@ use super::setup_table::SETUP;
 use super::source;
 use crate::judge::Unit;
 use crate::judge::fact_table::{FACTS, Fact, GROUPS};
-use crate::judge::functions::FUNCTIONS;
+use crate::judge::functions::{FUNCTIONS, Function, WINDOWS};
 use crate::judge::sandbox;
 use crate::settings::{SETTINGS, Settings};
 use crate::verdict::{FIGURES, Takes, TestFigure};
@@ -18,7 +18,8 @@ pub fn reference() -> String {
         .replace("{{SETTINGS}}", &settings())
         .replace("{{FIGURES}}", &figures())
         .replace("{{FACTS}}", &facts())
-        .replace("{{FUNCTIONS}}", &functions())
+        .replace("{{WINDOWS}}", &functions(WINDOWS))
+        .replace("{{FUNCTIONS}}", &functions(FUNCTIONS))
         .replace("{{LIMITS}}", &limits())
 }
 
@@ -96,11 +97,8 @@ fn calls() -> impl Iterator<Item = (&'static Fact, &'static str, usize)> {
     FACTS.iter().filter_map(|fact| fact.form().map(|(form, arguments)| (fact, form, arguments)))
 }
 
-fn functions() -> String {
-    table(
-        &["function", "what it does"],
-        FUNCTIONS.iter().map(|row| vec![format!("`{}`", row.form), row.purpose.to_owned()]),
-    )
+fn functions(rows: &[Function]) -> String {
+    table(&["function", "what it does"], rows.iter().map(|row| vec![format!("`{}`", row.form), row.purpose.to_owned()]))
 }
 
 fn limits() -> String {

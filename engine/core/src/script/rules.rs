@@ -6,12 +6,12 @@ use super::positions::span;
 use super::source::Code;
 use super::spoilt::Spoilt;
 use super::syntax::{TimeUnit, WrittenRule, written_rules};
-use crate::diagnostic::{Diagnostic, Mistakes, Result, printable};
+use crate::diagnostic::{Diagnostic, Mistakes, Result, nearest_name, printable};
 use crate::judge::explain;
 use crate::judge::expression::{Flag, Number, Typed};
-use crate::judge::needs::Needs;
+use crate::judge::functions::WINDOWS;
 use crate::judge::rule::{Clause, CompiledRule, Persistence, RuleText, ScriptClause};
-use rhai::{AST, ASTNode, Expr, Module, Scope, Shared, Stmt};
+use rhai::{AST, ASTNode, Expr, Module, Position, Shared, Stmt};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
@@ -22,14 +22,12 @@ const MAX_TIME: f64 = 1e6;
 pub(super) fn rules(
     code: &Code,
     ast: &AST,
-    constants: &Scope<'static>,
-    needs: &mut Needs,
+    compiler: &mut Compiler<'_>,
     spoilt: &Spoilt<'_>,
     mistakes: &mut Mistakes,
 ) -> Vec<CompiledRule> {
     let mut rules: Vec<CompiledRule> = Vec::new();
     let mut lines: BTreeMap<&str, usize> = BTreeMap::new();
-    let mut compiler = Compiler { constants, needs };
     let has_reward = ast.iter_functions().any(|function| function.name == "reward");
     let written = written_rules(ast.statements());
     for written in &written {
@@ -45,7 +43,7 @@ pub(super) fn rules(
             mistakes.add(name_at("a rule cannot be called \"reward\" beside 'fn reward'".to_owned(), "here"));
         }
         lines.entry(written.name).or_insert(line);
-        rules.extend(compiled(code, written, ast.shared_lib(), &mut compiler, spoilt, mistakes));
+        rules.extend(compiled(code, written, ast.shared_lib(), compiler, spoilt, mistakes));
     }
     rules
 }
@@ -86,10 +84,77 @@ fn compiled(
     if mistakes.count() > count {
         return None;
     }
-    let text = RuleText { name: written.name.to_owned(), line, text };
-    let (then, parts) = (written.then, parts(code, written.condition, compiler));
-    Some(CompiledRule { text, condition, condition_span, persistence, value, value_span, then, parts })
+    let stages = stages(code, written, &compiler.script.stages, mistakes);
+    let to_stage = written.to_stage.map(|named| stage(code, named, &compiler.script.stages, mistakes));
+    Some(CompiledRule {
+        text: RuleText { name: written.name.to_owned(), line, text },
+        condition,
+        condition_span,
+        persistence,
+        value,
+        value_span,
+        then: written.then,
+        stages: stages?,
+        once: written.once,
+        per_second: written.per_second,
+        to_stage: match to_stage {
+            None => None,
+            Some(stage) => Some(stage?),
+        },
+        parts: parts(code, written.condition, compiler),
+    })
 }
+
+/// The stages that a rule is for, as bits; nothing within if it is for all, nothing at all if one is not known.
+#[allow(clippy::option_option, reason = "the outer one is whether it is right, the inner one whether it is asked for")]
+fn stages(code: &Code, written: &WrittenRule<'_>, known: &[String], mistakes: &mut Mistakes) -> Option<Option<u32>> {
+    let named: Vec<Option<usize>> = written.stages.iter().map(|named| stage(code, *named, known, mistakes)).collect();
+    let bits = named.into_iter().try_fold(0, |bits, stage| stage.map(|stage| bits | (1 << stage)))?;
+    Some((!written.stages.is_empty()).then_some(bits))
+}
+
+/// The number of a stage; a mistake if there is none of this name.
+pub(super) fn stage(
+    code: &Code,
+    (name, at): (&str, Position),
+    known: &[String],
+    mistakes: &mut Mistakes,
+) -> Option<usize> {
+    let found = known.iter().position(|stage| stage == name);
+    if found.is_none() {
+        let message = format!("there is no stage \"{}\"", printable(name));
+        let help = match nearest_name(name, known.iter().map(String::as_str)) {
+            Some(near) => format!("did you mean \"{}\"?", printable(near)),
+            None if known.is_empty() => format!("name the stages first: stages([\"{}\", \"...\"]);", printable(name)),
+            None => format!("there are: {}", printable(&known.join(", "))),
+        };
+        mistakes.add(explain::mistake(&code.source, "E-SCRIPT-STAGE", at, message, "not known").help(help));
+    }
+    found
+}
+
+/// Whether an expression reads what only a native tree can remember.
+fn remembers(expr: &Expr, own: &[String]) -> Option<Position> {
+    let mut found = None;
+    expr.walk(&mut Vec::new(), &mut |path: &[ASTNode<'_>]| {
+        if let Some(ASTNode::Expr(Expr::FnCall(call, position))) = path.last()
+            && WINDOWS.iter().any(|row| row.name == call.name)
+            && !own.iter().any(|own| *own == call.name.as_str())
+        {
+            found = found.or(Some(*position));
+        }
+        true
+    });
+    found
+}
+
+/// The mistake of something that cannot be remembered.
+pub(super) fn not_remembered(code: &Code, at: Position) -> Diagnostic {
+    let message = "only facts, numbers and the functions of the table can be remembered";
+    let help = "give it a name of its own: measure m = ...; and read m here";
+    explain::mistake(&code.source, "E-SCRIPT-WINDOW", at, message, "cannot be remembered").help(help)
+}
+
 fn wrong(code: &Code, message: &str, span: &Range<usize>, label: &str) -> Diagnostic {
     Diagnostic::new("E-SCRIPT-RULE", message).at(&code.source, span.clone(), label)
 }
@@ -103,7 +168,7 @@ fn condition(
 ) -> Result<Clause<Flag>> {
     match compiler.clause(written.condition) {
         Some(Typed::Flag(flag)) => Ok(Clause::Native(flag)),
-        None => Ok(Clause::Script(script(written, written.condition, library))),
+        None => script(code, written, written.condition, library, compiler),
         Some(_) => wrong(code, "a condition must be true or false", span, "this is a number")
             .help("compare it: laser.nearest < 0.25")
             .fail(),
@@ -125,11 +190,20 @@ fn value(
         Some(Typed::Flag(_)) => wrong(code, "a rule's value must be a number", span, "this is true or false")
             .help("write a number, such as -1")
             .fail(),
-        None => Ok(Clause::Script(script(written, written.value, library))),
+        None => script(code, written, written.value, library, compiler),
     }
 }
 
-fn script(written: &WrittenRule<'_>, expr: &Expr, library: &Shared<Module>) -> ScriptClause {
+fn script<T>(
+    code: &Code,
+    written: &WrittenRule<'_>,
+    expr: &Expr,
+    library: &Shared<Module>,
+    compiler: &Compiler<'_>,
+) -> Result<Clause<T>> {
+    if let Some(at) = remembers(expr, &compiler.script.own) {
+        return not_remembered(code, at).fail();
+    }
     let mut roots = BTreeSet::new();
     expr.walk(&mut Vec::new(), &mut |path: &[ASTNode<'_>]| {
         if let Some(ASTNode::Expr(Expr::Variable(variable, None, _))) = path.last() {
@@ -138,7 +212,8 @@ fn script(written: &WrittenRule<'_>, expr: &Expr, library: &Shared<Module>) -> S
         true
     });
     let statement = Stmt::Expr(Box::new(expr.clone()));
-    ScriptClause { ast: AST::new([statement], library.clone()), variables: written.variables, roots }
+    let (ast, variables) = (AST::new([statement], library.clone()), written.variables);
+    Ok(Clause::Script(ScriptClause { ast, variables, roots }))
 }
 
 fn persistence(code: &Code, written: &WrittenRule<'_>, compiler: &mut Compiler<'_>) -> Result<Persistence> {

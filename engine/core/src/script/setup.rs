@@ -18,6 +18,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 const MAX_CALLS: usize = 256;
 /// Most actions.
 const MAX_ACTIONS: usize = 64;
+/// Most stages.
+const MAX_STAGES: usize = 16;
 /// Fastest forward motion of an action, m/s.
 const MAX_LINEAR: f64 = 2.0;
 /// Fastest turn of an action, rad/s.
@@ -148,6 +150,10 @@ impl SetupReader<'_> {
                 self.settings.actions = self.actions(actions)?;
                 self.mark("actions".to_owned(), self.call)
             }
+            ("stages", Some(stages), None, None) if stages.is_array() => {
+                self.settings.stages = self.stages(stages)?;
+                self.mark("stages".to_owned(), self.call)
+            }
             ("policy", Some(policy), Some(path), None) if policy.is_string() && path.is_string() => {
                 let policy = PolicySettings { name: self.word(policy, form)?, path: self.word(path, form)? };
                 let place = format!("policy:{}", self.settings.policies.len());
@@ -164,7 +170,9 @@ impl SetupReader<'_> {
                 self.set_or_tell(name, key, &Value::Text(kind), self.call);
                 map.map_or(Ok(()), |map| self.group(name, map, form))
             }
-            (group, Some(map), None, None) if !matches!(group, "world" | "filter" | "actions" | "policy") => {
+            (group, Some(map), None, None)
+                if !matches!(group, "world" | "filter" | "actions" | "stages" | "policy") =>
+            {
                 self.group(group, map, form)
             }
             _ => self.wrong(self.call, format!("'{name}' is written otherwise"), "found this", form),
@@ -302,6 +310,29 @@ impl SetupReader<'_> {
             twists.push(Twist::new(linear, angular));
         }
         Ok(twists)
+    }
+
+    fn stages(&self, stages: Dynamic) -> Result<Vec<String>> {
+        let form = "stages([\"search\", \"approach\"]);";
+        let list = stages.into_array().unwrap_or_default();
+        if !(2..=MAX_STAGES).contains(&list.len()) {
+            let message = format!("there must be 2 to {MAX_STAGES} stages, found {}", list.len());
+            return self.wrong(self.call, message, "set here", form);
+        }
+        let mut names: Vec<String> = Vec::new();
+        for stage in list {
+            let name = self.word(stage, form)?;
+            if names.contains(&name) {
+                return self.wrong(
+                    self.call,
+                    format!("there are two stages \"{}\"", printable(&name)),
+                    "set here",
+                    form,
+                );
+            }
+            names.push(name);
+        }
+        Ok(names)
     }
 
     /// Where a key and its value stand in the map of the present call; the call itself if they are not written there.

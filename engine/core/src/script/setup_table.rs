@@ -24,6 +24,11 @@ pub(super) const SETUP: &[SetupCall] = &[
         "One stage of the filter chain; several calls make a chain.",
     ),
     row("actions", "actions([[0.4, 0.2], [0.4, 0.0]]);", "The actions: forward speed in m/s, turning speed in rad/s."),
+    row(
+        "stages",
+        "stages([\"search\", \"approach\"]);",
+        "What the robot can be about: it begins with the first, also after every recovery. The stage is one more digit of the state.",
+    ),
     row("run", "run(#{ steps: 5200 });", "The length and the rhythm of a run."),
     row("robot", "robot(#{ lag_s: 0.15 });", "How the robot moves."),
     row("camera", "camera(#{ tilt_deg: 42 });", "The camera and its mount."),

@@ -246,6 +246,32 @@ impl Code {
         start..start + tail.trim_end().len()
     }
 
+    /// Whether a word stands anywhere in the script.
+    pub(super) fn names(&self, word: &str) -> bool {
+        let part = |c: char| c.is_alphanumeric() || c == '_';
+        self.plain
+            .match_indices(word)
+            .any(|(at, _)| !self.plain[..at].ends_with(part) && !self.plain[at + word.len()..].starts_with(part))
+    }
+
+    /// Whether the script defines a name itself, as a variable, a function or one of its arguments: then the word is its own.
+    pub(super) fn defines(&self, name: &str) -> bool {
+        let part = |c: char| c.is_alphanumeric() || c == '_';
+        self.plain.match_indices(name).any(|(at, _)| {
+            let (before, after) = (&self.plain[..at], &self.plain[at + name.len()..]);
+            let whole = !before.ends_with(part) && !after.starts_with(part);
+            let word = before.trim_end().rsplit(|c: char| !part(c)).next().unwrap_or_default();
+            let spaced = before.ends_with(char::is_whitespace);
+            let defined = spaced && matches!(word, "let" | "const" | "fn" | "for");
+            let argument = || {
+                let open = before.rfind(['(', ')', '{', '}', ';']).unwrap_or(0);
+                let head = before[..open].trim_end().trim_end_matches(part).trim_end();
+                before[open..].starts_with('(') && head.ends_with("fn")
+            };
+            whole && (defined || argument())
+        })
+    }
+
     /// The bytes of the name of a function where it is defined.
     pub(super) fn function(&self, name: &str) -> Option<Range<usize>> {
         let word = |c: char| c.is_alphanumeric() || c == '_';

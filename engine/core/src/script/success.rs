@@ -262,11 +262,3 @@ impl SuccessCompiler<'_> {
         }
     }
 }
-
-/// Whether a script has such a statement: before, the words are the script's own.
-pub(super) fn is_asked_for(code: &Code) -> bool {
-    let ends = |text: &str| text.trim_end().is_empty() || text.trim_end().ends_with([';', '}']);
-    code.plain
-        .match_indices("success")
-        .any(|(at, word)| ends(&code.plain[..at]) && code.plain[at + word.len()..].trim_start().starts_with('"'))
-}

@@ -1,5 +1,13 @@
-//! The forms of a rule and of a success: `rule "name" when CONDITION [for N steps | for N seconds] => VALUE [then recover | fail | goal | restart];`
+//! The forms that the language adds to Rhai: rules, conditions of success, measures.
+//!
+//! ```text
+//! rule "name" [in "stage", ...] when CONDITION [for N steps | for N seconds] [once] => VALUE [per second]
+//!             [then recover | fail | goal | restart | stage "name"];
+//! success "name" when CONDITION;
+//! measure name = EXPRESSION;
+//! ```
 
+use super::source::Code;
 use crate::outcome::Then;
 use rhai::{CustomExpr, Dynamic, Engine, Expr, ImmutableString, LexError, ParseError, Position, Stmt};
 
@@ -19,10 +27,16 @@ pub(super) struct WrittenRule<'a> {
     pub name: &'a str,
     pub name_position: Position,
     pub position: Position,
+    /// The stages in which it is judged; none for all.
+    pub stages: Vec<(&'a str, Position)>,
     pub condition: &'a Expr,
     pub time: Option<(&'a Expr, TimeUnit)>,
+    pub once: bool,
     pub value: &'a Expr,
+    pub per_second: bool,
     pub then: Option<Then>,
+    /// The stage that it leads to.
+    pub to_stage: Option<(&'a str, Position)>,
     /// How many top-level variables stand before it.
     pub variables: usize,
 }
@@ -35,12 +49,54 @@ pub(super) struct WrittenSuccess<'a> {
     pub condition: &'a Expr,
 }
 
-/// Teaches the forms to an engine. Running them does nothing: they are read from the tree. The parser takes the first word of
-/// a form wherever it stands, so `success` is taught only to a script that has such a statement.
-pub(super) fn register(engine: &mut Engine, with_success: bool) {
+/// A measure as it stands in the script's tree: `measure name = EXPRESSION;`
+#[derive(Debug)]
+pub(super) struct WrittenMeasure<'a> {
+    pub name: &'a str,
+    pub name_position: Position,
+    pub expression: &'a Expr,
+}
+
+/// The forms that a script has besides rules. The parser takes the first word of a form wherever it stands, so each is taught
+/// only to a script with such a statement: in others the word stays the script's own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Forms {
+    pub success: bool,
+    pub measure: bool,
+}
+
+impl Forms {
+    /// The forms that a script has.
+    pub(super) fn of(code: &Code) -> Self {
+        let named = |tail: &str| {
+            let name = tail.trim_start_matches(|c: char| c.is_alphanumeric() || c == '_');
+            name.len() < tail.len() && name.trim_start().starts_with('=') && !name.trim_start().starts_with("==")
+        };
+        Self {
+            success: begins_a_statement(code, "success", |tail| tail.starts_with('"')),
+            measure: begins_a_statement(code, "measure", named),
+        }
+    }
+}
+
+/// Whether a statement begins with a word, followed by something that the form needs.
+fn begins_a_statement(code: &Code, word: &str, follows: impl Fn(&str) -> bool) -> bool {
+    let ends = |text: &str| text.trim_end().is_empty() || text.trim_end().ends_with([';', '}']);
+    let spaced = |tail: &str| tail.starts_with(|c: char| c.is_whitespace() || c == '"');
+    code.plain.match_indices(word).any(|(at, _)| {
+        let tail = &code.plain[at + word.len()..];
+        ends(&code.plain[..at]) && spaced(tail) && follows(tail.trim_start())
+    })
+}
+
+/// Teaches the forms to an engine. Running them does nothing: they are read from the tree.
+pub(super) fn register(engine: &mut Engine, forms: Forms) {
     engine.register_custom_syntax_with_state_raw("rule", next, false, |_, _, _| Ok(Dynamic::UNIT));
-    if with_success {
+    if forms.success {
         engine.register_custom_syntax_with_state_raw("success", next_of_success, false, |_, _, _| Ok(Dynamic::UNIT));
+    }
+    if forms.measure {
+        engine.register_custom_syntax_with_state_raw("measure", next_of_measure, false, |_, _, _| Ok(Dynamic::UNIT));
     }
 }
 
@@ -54,39 +110,90 @@ fn wrong(message: &str) -> Next {
     Err(LexError::ImproperSymbol(OURS.to_owned(), message.to_owned()).into_err(Position::NONE))
 }
 
-fn next(symbols: &[ImmutableString], ahead: &str, _: &mut Dynamic) -> Next {
-    let expression = || Ok(Some("$expr$".into()));
-    let Some(tail) = symbols.get(2..) else {
-        return match ahead.starts_with('"') {
-            true => Ok(Some("$string$".into())),
-            false => wrong("a rule needs a name in quotes: rule \"too close\" when ..."),
-        };
+/// What of a rule has been read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Read {
+    Rule,
+    Name,
+    In,
+    Stage,
+    When,
+    Condition,
+    For,
+    Time,
+    Unit,
+    Once,
+    Arrow,
+    Value,
+    Per,
+    Second,
+    Then,
+    ThenStage,
+    End,
+}
+
+fn next(_: &[ImmutableString], ahead: &str, state: &mut Dynamic) -> Next {
+    let read = state.clone().try_cast::<Read>().unwrap_or(Read::Rule);
+    let (symbol, read) = match step(read, ahead) {
+        Ok(Some(next)) => next,
+        Ok(None) => return Ok(None),
+        Err(message) => return wrong(message),
     };
-    let before = tail.len().checked_sub(2).map_or("", |index| tail[index].as_str());
-    match (tail.last().map_or("", |last| last.as_str()), before) {
-        ("", _) => expect("when", ahead, "after the rule's name comes 'when' and a condition"),
-        ("when", _) if matches!(ahead, "for" | "=>" | ";") => wrong("after 'when' comes a condition"),
-        ("when", _) => expression(),
-        ("for", _) => expression(),
-        ("=>", _) if matches!(ahead, "then" | ";" | "{EOF}") => {
-            wrong("this rule has no value: after '=>' comes a number, such as -1")
+    *state = Dynamic::from(read);
+    Ok(Some(symbol.into()))
+}
+
+/// The next symbol of a rule and what has been read with it; nothing at its end.
+fn step(read: Read, ahead: &str) -> Result<Option<(&str, Read)>, &'static str> {
+    const EXPRESSION: &str = "$expr$";
+    const TEXT: &str = "$string$";
+    let text = ahead.starts_with('"');
+    Ok(Some(match read {
+        Read::Rule if text => (TEXT, Read::Name),
+        Read::Rule => return Err("a rule needs a name in quotes: rule \"too close\" when ..."),
+        Read::Name if ahead == "in" => (ahead, Read::In),
+        Read::In if text => (TEXT, Read::Stage),
+        Read::In => {
+            return Err("after 'in' comes the name of a stage in quotes: rule \"found\" in \"search\" when ...");
         }
-        ("=>", _) => expression(),
-        ("$expr$", "when") if ahead == "for" => Ok(Some("for".into())),
-        ("$expr$", "when") => {
-            expect("=>", ahead, "after the condition comes 'for N steps', 'for N seconds', or '=>' and a value")
+        Read::Stage if ahead == "," => (ahead, Read::In),
+        Read::Name | Read::Stage if ahead == "when" => (ahead, Read::When),
+        Read::Name => return Err("after the rule's name comes 'when' and a condition"),
+        Read::Stage => return Err("after the stages comes 'when' and a condition"),
+        Read::When if matches!(ahead, "for" | "=>" | ";") => return Err("after 'when' comes a condition"),
+        Read::When => (EXPRESSION, Read::Condition),
+        Read::Condition if ahead == "for" => (ahead, Read::For),
+        Read::For => (EXPRESSION, Read::Time),
+        Read::Time if matches!(ahead, "steps" | "step" | "seconds" | "second") => (ahead, Read::Unit),
+        Read::Time => return Err("a time needs its unit: 'for 10 steps' or 'for 5 seconds'"),
+        Read::Condition | Read::Unit if ahead == "once" => (ahead, Read::Once),
+        Read::Condition | Read::Unit | Read::Once if ahead == "=>" => (ahead, Read::Arrow),
+        Read::Condition if matches!(ahead, "in" | "per" | "then") => {
+            return Err("the order of a rule is: in, when, for, once, =>, per second, then");
         }
-        ("$expr$", "for") if matches!(ahead, "steps" | "step" | "seconds" | "second") => Ok(Some(ahead.into())),
-        ("$expr$", "for") => wrong("a time needs its unit: 'for 10 steps' or 'for 5 seconds'"),
-        ("$expr$", "=>") if ahead == "then" => Ok(Some("then".into())),
-        ("$expr$", "=>") => Ok(None),
-        ("steps" | "step" | "seconds" | "second", _) => {
-            expect("=>", ahead, "this rule has no value: after the time comes '=>' and a number, such as -1")
+        Read::Condition => {
+            return Err("after the condition comes 'for N steps', 'for N seconds', or '=>' and a value");
         }
-        ("then", _) if Then::of(ahead).is_some() => Ok(Some(ahead.into())),
-        ("then", _) => wrong("after 'then' comes recover, fail, goal or restart"),
-        _ => Ok(None),
-    }
+        Read::Unit => return Err("this rule has no value: after the time comes '=>' and a number, such as -1"),
+        Read::Once => return Err("this rule has no value: after 'once' comes '=>' and a number, such as 1"),
+        Read::Arrow if matches!(ahead, "then" | "per" | ";" | "{EOF}") => {
+            return Err("this rule has no value: after '=>' comes a number, such as -1");
+        }
+        Read::Arrow => (EXPRESSION, Read::Value),
+        Read::Value if ahead == "per" => (ahead, Read::Per),
+        Read::Value if matches!(ahead, "once" | "for" | "in" | "when") => {
+            return Err("the order of a rule is: in, when, for, once, =>, per second, then");
+        }
+        Read::Per if ahead == "second" => (ahead, Read::Second),
+        Read::Per => return Err("a value is for one step, or 'per second'"),
+        Read::Value | Read::Second if ahead == "then" => (ahead, Read::Then),
+        Read::Then if ahead == "stage" => (ahead, Read::ThenStage),
+        Read::Then if Then::of(ahead).is_some() => (ahead, Read::End),
+        Read::Then => return Err("after 'then' comes recover, fail, goal, restart, or stage \"name\""),
+        Read::ThenStage if text => (TEXT, Read::End),
+        Read::ThenStage => return Err("after 'then stage' comes the name of a stage in quotes"),
+        Read::Value | Read::Second | Read::End => return Ok(None),
+    }))
 }
 
 fn next_of_success(symbols: &[ImmutableString], ahead: &str, _: &mut Dynamic) -> Next {
@@ -100,31 +207,67 @@ fn next_of_success(symbols: &[ImmutableString], ahead: &str, _: &mut Dynamic) ->
     }
 }
 
+fn next_of_measure(symbols: &[ImmutableString], ahead: &str, _: &mut Dynamic) -> Next {
+    match symbols {
+        [_] => Ok(Some("$ident$".into())),
+        [_, _] => expect("=", ahead, "after the name of a measure comes '=' and an expression"),
+        [_, _, _] if matches!(ahead, ";" | "{EOF}") => {
+            wrong("after '=' comes an expression: measure gap = laser.front;")
+        }
+        [_, _, _] => Ok(Some("$expr$".into())),
+        _ => Ok(None),
+    }
+}
+
+fn is_form_of(expr: &Expr, word: &str) -> bool {
+    matches!(expr, Expr::Custom(custom, _) if custom.tokens.first().is_some_and(|first| first == word))
+}
+
 /// Whether an expression is a rule.
 pub(super) fn is_rule_expr(expr: &Expr) -> bool {
-    matches!(expr, Expr::Custom(custom, _) if custom.tokens.first().is_some_and(|word| word == "rule"))
+    is_form_of(expr, "rule")
 }
 
 /// Whether an expression is a condition of success.
 pub(super) fn is_success_expr(expr: &Expr) -> bool {
-    matches!(expr, Expr::Custom(custom, _) if custom.tokens.first().is_some_and(|word| word == "success"))
+    is_form_of(expr, "success")
 }
 
-/// Whether a statement is a rule or a condition of success.
+/// Whether an expression is a measure.
+pub(super) fn is_measure_expr(expr: &Expr) -> bool {
+    is_form_of(expr, "measure")
+}
+
+/// The form that a statement is.
+fn form(statement: &Stmt) -> Option<(&Expr, &CustomExpr, Position)> {
+    let Stmt::Expr(expr) = statement else { return None };
+    let Expr::Custom(custom, position) = &**expr else { return None };
+    Some((expr, custom, *position))
+}
+
+/// Whether a statement is a form.
 pub(super) fn is_form(statement: &Stmt) -> bool {
-    matches!(statement, Stmt::Expr(expr) if matches!(**expr, Expr::Custom(..)))
+    form(statement).is_some()
 }
 
 /// The conditions of success that stand at the top level, in their order.
 pub(super) fn written_successes(statements: &[Stmt]) -> Vec<WrittenSuccess<'_>> {
-    statements.iter().filter_map(written_success).collect()
+    let written = statements.iter().filter_map(|statement| {
+        let (_, custom, _) = form(statement).filter(|(expr, ..)| is_success_expr(expr))?;
+        let [Expr::StringConstant(name, name_position), condition] = custom.inputs.as_slice() else { return None };
+        Some(WrittenSuccess { name, name_position: *name_position, condition })
+    });
+    written.collect()
 }
 
-fn written_success(statement: &Stmt) -> Option<WrittenSuccess<'_>> {
-    let Stmt::Expr(expr) = statement else { return None };
-    let (Expr::Custom(custom, _), true) = (&**expr, is_success_expr(expr)) else { return None };
-    let [Expr::StringConstant(name, name_position), condition] = custom.inputs.as_slice() else { return None };
-    Some(WrittenSuccess { name, name_position: *name_position, condition })
+/// The measures that stand at the top level, in their order.
+pub(super) fn written_measures(statements: &[Stmt]) -> Vec<WrittenMeasure<'_>> {
+    let written = statements.iter().filter_map(|statement| {
+        let (_, custom, _) = form(statement).filter(|(expr, ..)| is_measure_expr(expr))?;
+        let [Expr::Variable(name, _, name_position), expression] = custom.inputs.as_slice() else { return None };
+        Some(WrittenMeasure { name: &name.1, name_position: *name_position, expression })
+    });
+    written.collect()
 }
 
 /// The rules that stand at the top level, in their order.
@@ -132,31 +275,66 @@ pub(super) fn written_rules(statements: &[Stmt]) -> Vec<WrittenRule<'_>> {
     let mut variables = 0;
     let mut rules = Vec::new();
     for statement in statements {
-        match statement {
-            Stmt::Var(variable, ..) if variable.2.is_none() => variables += 1,
-            Stmt::Expr(expr) => {
-                if let (Expr::Custom(custom, position), true) = (&**expr, is_rule_expr(expr)) {
-                    rules.extend(read(custom, *position, variables));
-                }
-            }
-            _ => {}
+        if matches!(statement, Stmt::Var(variable, ..) if variable.2.is_none()) {
+            variables += 1;
+        }
+        if let Some((_, custom, position)) = form(statement).filter(|(expr, ..)| is_rule_expr(expr)) {
+            rules.extend(read(custom, position, variables));
         }
     }
     rules
 }
 
+/// A rule from its words and what stands between them.
 fn read(custom: &CustomExpr, position: Position, variables: usize) -> Option<WrittenRule<'_>> {
-    let (Expr::StringConstant(name, name_position), rest) = custom.inputs.split_first()? else {
-        return None;
-    };
-    let word = |wanted: &[&str]| custom.tokens.iter().skip(2).any(|token| wanted.contains(&token.as_str()));
-    let unit = if word(&["seconds", "second"]) { TimeUnit::Seconds } else { TimeUnit::Steps };
-    let (condition, time, value) = match rest {
-        [condition, value] => (condition, None, value),
-        [condition, time, value] => (condition, Some((time, unit)), value),
-        _ => return None,
-    };
-    let then = custom.tokens.last().and_then(|last| Then::of(last));
-    let name_position = *name_position;
-    Some(WrittenRule { name, name_position, position, condition, time, value, then, variables })
+    let mut inputs = custom.inputs.iter();
+    let (mut word, mut name, mut stages, mut to_stage) = ("rule", None, Vec::new(), None);
+    let (mut condition, mut time, mut unit, mut value, mut then) = (None, None, TimeUnit::Steps, None, None);
+    let (mut once, mut per_second) = (false, false);
+    for token in custom.tokens.iter().skip(1) {
+        match token.as_str() {
+            "$string$" => {
+                let Expr::StringConstant(text, position) = inputs.next()? else { return None };
+                match word {
+                    "in" | "," => stages.push((text.as_str(), *position)),
+                    "stage" => to_stage = Some((text.as_str(), *position)),
+                    _ => name = Some((text.as_str(), *position)),
+                }
+            }
+            "$expr$" => {
+                let expr = inputs.next()?;
+                match word {
+                    "when" => condition = Some(expr),
+                    "for" => time = Some(expr),
+                    _ => value = Some(expr),
+                }
+            }
+            known => {
+                match (word, known) {
+                    ("per", _) => per_second = true,
+                    ("then", known) => then = Then::of(known),
+                    (_, "seconds" | "second") => unit = TimeUnit::Seconds,
+                    (_, "once") => once = true,
+                    _ => {}
+                }
+                word = known;
+            }
+        }
+    }
+    let (name, name_position) = name?;
+    let (condition, value, time) = (condition?, value?, time.map(|time| (time, unit)));
+    Some(WrittenRule {
+        name,
+        name_position,
+        position,
+        stages,
+        condition,
+        time,
+        once,
+        value,
+        per_second,
+        then,
+        to_stage,
+        variables,
+    })
 }

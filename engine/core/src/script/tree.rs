@@ -2,7 +2,7 @@
 
 use super::refused;
 use super::source::Code;
-use super::success;
+use super::syntax::{Forms, written_measures};
 use crate::diagnostic::{Diagnostic, Kind, Mistakes};
 use crate::judge::explain;
 use crate::judge::fact_table::GROUPS;
@@ -30,6 +30,8 @@ pub(super) struct Tree {
 pub(super) struct Known {
     /// Names of the variables.
     pub variables: Vec<String>,
+    /// Names of the measures.
+    pub measures: Vec<String>,
     /// Statements that are not in the tree, since they cannot be parsed.
     pub lost: Vec<Range<usize>>,
 }
@@ -42,14 +44,21 @@ pub(super) fn tree(engine: &mut Engine, code: &Code, mistakes: &mut Mistakes) ->
     few_definitions(code)?;
     engine.set_strict_variables(false);
     let (ast, lost, text) = parsed(engine, code, mistakes)?;
+    let forms = Forms::of(code);
     let variables: Vec<String> = ast.statements().iter().filter_map(variable).collect();
     engine.set_strict_variables(true);
     let mut scope = Scope::new();
-    for name in GROUPS.iter().map(|(group, _)| *group).chain(["facts", "calibrated"]) {
+    let groups = GROUPS.iter().map(|(group, _)| *group).filter(|group| !code.defines(group));
+    for name in groups.chain(["facts", "calibrated"]) {
         scope.push(name, ());
     }
-    if success::is_asked_for(code) {
+    if forms.success {
         scope.push("test", ()).push("untrained", ());
+    }
+    let measures: Vec<String> =
+        written_measures(ast.statements()).iter().map(|measure| measure.name.to_owned()).collect();
+    for name in &measures {
+        scope.push(name.as_str(), ());
     }
     for name in &variables {
         scope.push(name.as_str(), ());
@@ -58,7 +67,7 @@ pub(super) fn tree(engine: &mut Engine, code: &Code, mistakes: &mut Mistakes) ->
         Ok(ast) => (ast, None),
         Err(error) => (ast, Some(Box::new(refused::syntax(&code.source, &error, &variables)))),
     };
-    Ok(Tree { ast, known: Known { variables, lost }, refused })
+    Ok(Tree { ast, known: Known { variables, measures, lost }, refused })
 }
 
 /// Checks that no more variables are defined than anyone needs: the parser compares each with all before it.

@@ -37,6 +37,8 @@ pub struct Settings {
     pub recovery: RecoverySettings,
     /// What drives by itself.
     pub movers: MoverSettings,
+    /// What the robot can be about, the first one first; empty for a behaviour without stages.
+    pub stages: Vec<String>,
     /// Learned policies to combine, in the order of the script; empty for a behaviour that learns.
     pub policies: Vec<PolicySettings>,
     /// How they are combined.
@@ -235,6 +237,7 @@ impl Default for Settings {
             },
             recovery: RecoverySettings { to: RecoverTo::Nearest, distance_m: 1.1, position_m: 0.1, yaw_deg: 8.6 },
             movers: MoverSettings { speed: 1.0 },
+            stages: Vec::new(),
             policies: Vec::new(),
             combine: CombineSettings { way: CombineWay::Priority, margin: 0.5, scaled: false },
         }

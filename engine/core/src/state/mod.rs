@@ -3,11 +3,13 @@
 //! [`StateMap`] is the door; [`GridMap`], the paper's grid, is what ships. This room sees images and masks, never a world,
 //! a pose or a scan: the state cannot cheat.
 
+mod composed;
 mod grid;
 mod grid_map;
 
 use crate::sensors::observation::Image;
 
+pub use composed::{ComposedMap, StatePart};
 pub use grid::{Grid, GridError, MAX_STATES};
 pub use grid_map::GridMap;
 
@@ -20,6 +22,10 @@ pub struct Percept<'a> {
     pub mask: &'a [u8],
     /// The grid over the mask, its cells counted.
     pub grid: &'a Grid,
+    /// The grids of all views, that one first.
+    pub grids: &'a [Grid],
+    /// Further parts of the state that are numbers already, such as the stage.
+    pub digits: &'a [usize],
 }
 
 /// One digit of a state's number.

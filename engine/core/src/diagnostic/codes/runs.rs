@@ -130,7 +130,7 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
     (
         "E-RUN-TAG",
         Kind::Usage,
-        "A tag of a run is a word or a few on one line, at most 60 characters: engine runs tag runs/wall/1 best",
+        "A tag of a run is a word or a few on one line, at most 60 characters. Write for example: engine runs tag runs/wall/1 best.",
     ),
     (
         "E-RUN-TAKEN",

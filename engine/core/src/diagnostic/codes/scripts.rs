@@ -93,6 +93,14 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          A script is a short text file that ends in .rhai.",
     ),
     (
+        "E-SCRIPT-STAGE",
+        Kind::Input,
+        "A rule names a stage that the script does not have.\n\
+         The stages are named once, at the top: stages([\"search\", \"approach\"]); the robot begins with the first, and is in the \
+         first again after every recovery. Rules enter another with then stage \"approach\", and are judged in some only with \
+         in \"search\".",
+    ),
+    (
         "E-SCRIPT-SUCCESS",
         Kind::Input,
         "A condition of success cannot be understood, or asks for a figure that the world does not have.\n\
@@ -114,6 +122,14 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
         "A truth value stands where a number belongs, or a number where something true or false belongs.\n\
          Facts such as robot.contact are true or false already: write robot.contact, not robot.contact == 1, which is never \
          true. Two limits are two comparisons: 0.3 < laser.front && laser.front < 0.6.",
+    ),
+    (
+        "E-SCRIPT-WINDOW",
+        Kind::Input,
+        "Something cannot be remembered from step to step as it is written.\n\
+         change, average, fired and since stand in rules and measures, over facts, numbers and the functions of the table; in a \
+         function they have no memory. Name what you need outside of it: measure progress = change(odometry.forward_m, 10); and \
+         read facts.progress in the function.",
     ),
     (
         "E-SET",

@@ -202,8 +202,8 @@ fn a_grey_image_is_the_luma_of_the_image_in_colour() {
                 Texture::Stripes { amplitude, scale_m },
             ][(index + round) % 4];
             // In some rounds colours are so dark or so light that noise is cut off.
-            material.colour =
-                [[40, 120, 90], [3, 120, 90], [60, 255, 90]][round % 3].map(|byte| byte + index as u8 % 3);
+            material.colour = [[40, 120, 90], [3, 120, 90], [60, 255, 90]][round % 3]
+                .map(|byte: u8| byte.wrapping_add(index as u8 % 3));
         }
         parts.light.ambient = 1.0;
         let scene = Arc::new(Scene::new(parts));
