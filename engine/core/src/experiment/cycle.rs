@@ -30,6 +30,13 @@ pub struct Cycle<R> {
     laser_range_m: (f64, f64),
 }
 
+impl<R> Cycle<R> {
+    /// What the script's measures came to in the last step, in their order.
+    pub(super) fn judged_measures(&self) -> impl Iterator<Item = f64> {
+        self.judge.measures()
+    }
+}
+
 impl<R: Robot> Cycle<R> {
     /// Takes the first observation and runs the script's calibration on it.
     ///
@@ -164,6 +171,7 @@ impl<R: Robot> Cycle<R> {
         self.since_recovery += 1;
         self.perceive()?;
         self.fill_facts(action, index + 1);
+        let stage = self.judge.stage();
         let verdict = self.judge.judge().map_err(|error| at_step(error, index))?;
         if self.judge.remembers() {
             self.compose();
@@ -180,7 +188,7 @@ impl<R: Robot> Cycle<R> {
             potential,
             next_potential: self.potential,
             then: verdict.then,
-            entered: verdict.stage,
+            entered: verdict.stage.filter(|entered| *entered != stage),
             contact: self.observation.contact,
         })
     }

@@ -4,7 +4,7 @@ use super::summary::rule_totals;
 use super::truth::{Spells, Truth};
 use super::{Plan, Tally};
 use crate::stats::Sorted;
-use crate::verdict::{AskedFigure, TestFigures};
+use crate::verdict::{AskedFigure, MeasureTotal, StageTotal, TestFigures};
 
 /// Half of the paper's cruising speed, net along the route, m/s.
 const TASK_SPEED_M_PER_S: f64 = 0.1;
@@ -18,6 +18,7 @@ pub(super) fn figures(
     goals_steps: &[u32],
     truth: Option<&Truth>,
     asked: Vec<AskedFigure>,
+    (stage_rates, measures): (Vec<StageTotal>, Vec<MeasureTotal>),
 ) -> TestFigures {
     let period_s = plan.settings.run.period_s;
     let seconds = (steps as f64 * period_s).max(f64::MIN_POSITIVE);
@@ -55,6 +56,10 @@ pub(super) fn figures(
         prey_distance_m: prey_m.iter().map(|distance| f64::from(*distance)).collect::<Sorted>().upper_median(),
         does_task: net_route_m.map(|net_m| net_m.abs() / seconds >= TASK_SPEED_M_PER_S),
         rules: rule_totals(plan, tally),
+        stages: tally.stages().0,
+        rounds: tally.stages().1,
+        stage_rates,
+        measures,
         asked,
     }
 }

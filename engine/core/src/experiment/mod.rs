@@ -26,6 +26,7 @@ mod seed_run;
 mod seeds;
 mod sight;
 mod snapshot;
+mod staged;
 mod step;
 mod summary;
 mod tally;

@@ -47,6 +47,8 @@ pub struct StepReasons {
 pub struct StateCells {
     /// Its number.
     pub index: usize,
+    /// What it stands for, in words.
+    pub text: String,
     /// Which cells are filled, row by row from the top left.
     pub cells: Vec<bool>,
 }
@@ -108,9 +110,10 @@ impl StepReasons {
         let (Some(step), Some(record)) = (playback.advance()?, ledger.record(index)) else { return Ok(None) };
         let plan = playback.plan();
         let (cycle, twist) = (playback.cycle(), plan.settings.actions[step.action]);
-        let cells = |state: usize| StateCells {
-            index: state,
-            cells: cycle.state_map().describe(state).cells.map_or_else(Vec::new, |cells| cells.filled),
+        let cells = |state: usize| {
+            let described = cycle.state_map().describe(state);
+            let cells = described.cells.map_or_else(Vec::new, |cells| cells.filled);
+            StateCells { index: state, text: described.text, cells }
         };
         let stopped_by = cycle.fired().iter().rposition(Option::is_some).filter(|_| step.then.is_some());
         let rules = plan.behaviour.rules().iter().enumerate();

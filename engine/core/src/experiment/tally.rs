@@ -37,6 +37,8 @@ impl Tally {
         window.reinforcement += step.reward;
         window.endings.count(step.ending());
         window.contacts += u64::from(step.contact);
+        window.stages += u64::from(step.entered.is_some());
+        window.rounds += u64::from(step.entered == Some(0));
         let from = self.by_rule.len() - self.fired.len();
         for (rule, value) in fired.iter().enumerate() {
             if let Some(value) = value {
@@ -99,6 +101,12 @@ impl Tally {
     #[must_use]
     pub fn contacts(&self) -> u64 {
         self.windows.iter().map(|window| window.contacts).sum()
+    }
+
+    /// Changes of the stage, and of these, changes to the first.
+    #[must_use]
+    pub fn stages(&self) -> (u64, u64) {
+        self.windows.iter().fold((0, 0), |(stages, rounds), window| (stages + window.stages, rounds + window.rounds))
     }
 
     /// Reinforcement of each window, first to last.

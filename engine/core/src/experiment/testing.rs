@@ -7,6 +7,7 @@ use super::digest::StateHash;
 use super::measured::figures;
 use super::probes::Probes;
 use super::snapshot::{Glimpse, Snapshot};
+use super::staged::Staged;
 use super::trail::{Recorder, Trail};
 use super::truth::Truth;
 use super::{
@@ -168,11 +169,13 @@ pub fn test_robot<R: Robot>(
     let mut glimpse = Glimpse::after(SNAPSHOT_STEP.min(run.test_steps));
     let tally = Tally::new(plan.behaviour.rules().len(), run.test_steps);
     let goals_steps = Vec::with_capacity(run.test_steps.min(MOST_GOALS) as usize);
-    let mut probes = Probes::new(plan);
+    let (mut probes, mut staged) = (Probes::new(plan), Staged::new(plan));
     let mut counts = Counts { tally, attempt_steps: 0, goals_steps, stop };
-    let mut observers = (&mut hash, ((&mut truth, also), ((&mut trail, &mut probes), (&mut glimpse, &mut counts))));
+    let mut observers =
+        (&mut hash, ((&mut truth, also), ((&mut trail, (&mut probes, &mut staged)), (&mut glimpse, &mut counts))));
     let steps = drive(cycle, chooser, &mut observers, run.test_steps)?;
-    let figures = figures(plan, steps, &counts.tally, &counts.goals_steps, truth.as_ref(), probes.finish());
+    let figures =
+        figures(plan, steps, &counts.tally, &counts.goals_steps, truth.as_ref(), probes.finish(), staged.finish());
     let snapshot = glimpse.taken.unwrap_or_else(|| Snapshot::of(cycle));
     let (trail, state_hash) = (trail.finish(), hash.finish());
     Ok(TestRun { figures, trail, snapshot, tally: counts.tally, state_hash, combination: None })

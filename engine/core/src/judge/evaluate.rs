@@ -119,7 +119,7 @@ impl Present {
         }
     }
 
-    fn measures(&self) -> impl Iterator<Item = (usize, &Measure)> {
+    pub(crate) fn measures(&self) -> impl Iterator<Item = (usize, &Measure)> {
         self.compiled.remembered.iter().enumerate().filter_map(|(index, remembered)| match remembered {
             Remembered::Measure(measure) => Some((index, measure)),
             _ => None,

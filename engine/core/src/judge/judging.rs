@@ -211,6 +211,11 @@ impl Judge {
         &self.digits
     }
 
+    /// What the measures came to in the present facts, in their order.
+    pub(crate) fn measures(&self) -> impl Iterator<Item = f64> {
+        self.present.measures().map(|(index, _)| self.present.memory.value(index))
+    }
+
     /// Whether anything of the script outlasts a step, so that the robot at rest must be looked at too.
     #[must_use]
     pub fn remembers(&self) -> bool {

@@ -61,7 +61,7 @@ impl Memory {
         }
     }
 
-    pub(super) fn value(&self, index: usize) -> f64 {
+    pub(crate) fn value(&self, index: usize) -> f64 {
         self.values.get(index).copied().unwrap_or(f64::NAN)
     }
 

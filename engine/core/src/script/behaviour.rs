@@ -4,6 +4,7 @@ use super::outline::ScriptOutline;
 use super::setup::SettingPlaces;
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, nearest_name, printable};
 use crate::judge::compiled::CompiledScript;
+use crate::judge::memory::Remembered;
 use crate::judge::rule::CompiledRule;
 use crate::judge::{Judge, RuleText, reach};
 use crate::outcome::Then;
@@ -51,7 +52,8 @@ impl Behaviour {
             let text = source.text[source.line_range(line)].trim().to_owned();
             RuleText { name: "reward".to_owned(), line, text }
         }));
-        let endable = endable(&compiled.rules, outline.reward_recovers);
+        let stages = !compiled.stages.is_empty();
+        let endable = Endable { stages, ..endable(&compiled.rules, outline.reward_recovers) };
         let compiled = Arc::new(compiled);
         Self { name: name.to_owned(), settings, places, rules, outline, compiled, success: Vec::new(), endable }
     }
@@ -64,6 +66,14 @@ impl Behaviour {
     #[must_use]
     pub fn success(&self, has_route: bool, seconds: f64) -> Success {
         Success::new(&self.success, self.endable, has_route, seconds)
+    }
+
+    /// The names of its measures, in their order.
+    pub fn measures(&self) -> impl Iterator<Item = &str> {
+        self.compiled.remembered.iter().filter_map(|remembered| match remembered {
+            Remembered::Measure(measure) => Some(measure.name.as_str()),
+            _ => None,
+        })
     }
 
     /// Adds every condition of success that reads a figure which the world cannot give.
@@ -180,5 +190,6 @@ fn endable(rules: &[CompiledRule], by_function: bool) -> Endable {
                 then => then == Some(ending),
             })
     };
-    Endable { failure: may(Then::Fail, |value| value >= 0.0), goal: may(Then::Goal, |value| value <= 0.0) }
+    let (failure, goal) = (may(Then::Fail, |value| value >= 0.0), may(Then::Goal, |value| value <= 0.0));
+    Endable { failure, goal, stages: false }
 }

@@ -63,6 +63,11 @@ fn read(reader: &OutlineReader<'_>, ast: &AST, outline: &mut ScriptOutline) {
     let statements = ast.clone_statements_only();
     statements.walk(&mut |path: &[ASTNode<'_>]| {
         let in_rule = path.iter().any(|node| matches!(node, ASTNode::Expr(expr) if is_rule_expr(expr)));
+        if let Some(ASTNode::Expr(Expr::FnCall(call, _))) = path.last()
+            && let ("fired" | "since", [Expr::StringConstant(rule, _)]) = (call.name.as_str(), call.args.as_slice())
+        {
+            outline.remembered.push(rule.to_string());
+        }
         if let (true, Some(ASTNode::Expr(expr))) = (in_rule, path.last()) {
             groups.extend(group(expr));
         }

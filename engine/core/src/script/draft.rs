@@ -8,6 +8,7 @@ use super::rules::{rules, stage};
 use super::setup::{self, Log, SetUp};
 use super::source::{self, Code};
 use super::spoilt::Spoilt;
+use super::success::FigureNames;
 use super::syntax::{Forms, written_rules};
 use super::tree::{Tree, tree};
 use super::unread::Unread;
@@ -96,12 +97,13 @@ impl Draft {
         let mut compiler = Compiler { constants: &constants, needs: &mut needs, script: &mut script };
         measures::measures(code, &tree.ast, &tree.known.variables, &mut compiler, &spoilt, mistakes);
         let rules = rules(code, &tree.ast, &mut compiler, &spoilt, mistakes);
-        let rule_names: Vec<&str> = rules
-            .iter()
-            .map(|rule| rule.text.name.as_str())
-            .chain(has_function(&tree.ast, "reward").then_some("reward"))
-            .collect();
-        let success = success::conditions(code, &tree.ast, &constants, &rule_names, &spoilt, mistakes);
+        let reward_name = has_function(&tree.ast, "reward").then_some("reward");
+        let names = FigureNames {
+            rules: rules.iter().map(|rule| rule.text.name.as_str()).chain(reward_name).collect(),
+            stages: settings.stages.iter().map(String::as_str).collect(),
+            measures: tree.known.measures.iter().map(String::as_str).collect(),
+        };
+        let success = success::conditions(code, &tree.ast, &constants, &names, &spoilt, mistakes);
         let function = |name| if has_function(&tree.ast, name) { code.function(name) } else { None };
         let (reward, calibrate) = (function("reward"), function("calibrate"));
         if rules.is_empty() && reward.is_none() && mistakes.is_empty() {

@@ -56,6 +56,10 @@ pub struct RuleOutline {
     pub time_span: Option<Range<usize>>,
     /// What it says if it ends the attempt.
     pub then: Option<Then>,
+    /// Whether it is judged in some stages only.
+    pub stages: bool,
+    /// Whether it leads to a stage.
+    pub leads_on: bool,
 }
 
 /// What a loop over the beams of the laser gathers.
@@ -106,6 +110,8 @@ pub struct ScriptOutline {
     pub reward: Option<Range<usize>>,
     /// Whether `fn reward` can ask for recovery.
     pub(super) reward_recovers: bool,
+    /// Rules that `fired` or `since` name.
+    pub remembered: Vec<String>,
     /// Names that nothing uses.
     pub unused: Vec<UnusedName>,
 }

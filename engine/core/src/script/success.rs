@@ -15,16 +15,24 @@ use rhai::{AST, Expr, FnCallExpr, Position, Scope};
 
 const CODE: &str = "E-SCRIPT-SUCCESS";
 
-/// Every condition of success without a mistake in it; `rules` are the names of the behaviour's rules.
+/// What figures can be of, by name.
+#[derive(Debug)]
+pub(super) struct FigureNames<'a> {
+    pub rules: Vec<&'a str>,
+    pub stages: Vec<&'a str>,
+    pub measures: Vec<&'a str>,
+}
+
+/// Every condition of success without a mistake in it.
 pub(super) fn conditions(
     code: &Code,
     ast: &AST,
     constants: &Scope<'static>,
-    rules: &[&str],
+    names: &FigureNames<'_>,
     spoilt: &Spoilt<'_>,
     mistakes: &mut Mistakes,
 ) -> Vec<SuccessCondition> {
-    let compiler = SuccessCompiler { code, constants, rules };
+    let compiler = SuccessCompiler { code, constants, names };
     let mut conditions: Vec<SuccessCondition> = Vec::new();
     for written in &written_successes(ast.statements()) {
         let bytes = span(code, written.condition);
@@ -62,7 +70,7 @@ type Compiled<T> = Result<T, Box<Diagnostic>>;
 struct SuccessCompiler<'a> {
     code: &'a Code,
     constants: &'a Scope<'static>,
-    rules: &'a [&'a str],
+    names: &'a FigureNames<'a>,
 }
 
 impl SuccessCompiler<'_> {
@@ -194,9 +202,18 @@ impl SuccessCompiler<'_> {
             }
             (Takes::Nothing, Some(_)) => (format!("'{name}' is a figure, not a function"), None),
             (Takes::Rule, Some([Expr::StringConstant(rule, at)])) => {
-                (String::new(), Some(FigureOf::Rule(self.rule(rule.as_str(), *at)?)))
+                (String::new(), Some(FigureOf::Rule(self.named("rule", &self.names.rules, rule, *at)?)))
             }
             (Takes::Rule, _) => (format!("'{name}' needs the name of a rule"), None),
+            (Takes::Stage, Some([Expr::StringConstant(stage, at)])) => {
+                (String::new(), Some(FigureOf::Stage(self.named("stage", &self.names.stages, stage, *at)?)))
+            }
+            (Takes::Stage, _) => (format!("'{name}' needs the name of a stage"), None),
+            (Takes::Measure, Some([Expr::StringConstant(measure, at)])) => {
+                let of = self.named("measure", &self.names.measures, measure, *at)?;
+                (String::new(), Some(FigureOf::Measure(of)))
+            }
+            (Takes::Measure, _) => (format!("'{name}' needs the name of a measure"), None),
             (Takes::Mover, Some([Expr::StringConstant(mover, _)])) => {
                 (String::new(), Self::of_mover(figure, mover.as_str(), 0.0))
             }
@@ -220,15 +237,17 @@ impl SuccessCompiler<'_> {
         Some(FigureOf::Request(request.into()))
     }
 
-    fn rule(&self, rule: &str, at: Position) -> Compiled<usize> {
-        if let Some(index) = self.rules.iter().position(|own| *own == rule) {
+    /// The number of a name among others of its kind.
+    fn named(&self, kind: &str, names: &[&str], name: &str, at: Position) -> Compiled<usize> {
+        if let Some(index) = names.iter().position(|own| *own == name) {
             return Ok(index);
         }
-        let help = match nearest_name(rule, self.rules.iter().copied()) {
+        let help = match nearest_name(name, names.iter().copied()) {
             Some(near) => format!("did you mean \"{}\"?", printable(near)),
-            None => format!("there are: {}", printable(&self.rules.join(", "))),
+            None if names.is_empty() => format!("the script has no {kind}"),
+            None => format!("there are: {}", printable(&names.join(", "))),
         };
-        self.wrong(at, format!("there is no rule \"{}\"", printable(rule)), "not known", help)
+        self.wrong(at, format!("there is no {kind} \"{}\"", printable(name)), "not known", help)
     }
 
     fn unknown<T>(&self, name: &str, position: Position) -> Compiled<T> {

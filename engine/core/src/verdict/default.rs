@@ -10,6 +10,8 @@ use crate::judge::expression::{Arithmetic, Comparison};
 pub(crate) struct Endable {
     pub failure: bool,
     pub goal: bool,
+    /// Whether there are stages.
+    pub stages: bool,
 }
 
 /// At most so many failures in 1,000 steps.
@@ -28,7 +30,7 @@ const MOST_IDLE: f64 = 0.5;
 /// The conditions for a script whose attempts may end so, in a world with a lap route or without one; `seconds` is how long
 /// the test takes. None if nothing can be told.
 pub(crate) fn default_conditions(endable: Endable, has_route: bool, seconds: f64) -> Vec<SuccessCondition> {
-    use Comparison::{GreaterOrEqual, Less, LessOrEqual};
+    use Comparison::{Greater, GreaterOrEqual, Less, LessOrEqual};
     use Subject::{Test, Untrained};
     let figure = |subject, name| {
         let figure = TestFigure::of(name);
@@ -52,7 +54,9 @@ pub(crate) fn default_conditions(endable: Endable, has_route: bool, seconds: f64
         let chance = Term::Binary(Arithmetic::Multiply, Box::new([Term::Constant(BEATS_CHANCE), chance]));
         let beats = compare(GreaterOrEqual, figure(Test, "metres_per_failure"), chance);
         ask("beats chance", "test.metres_per_failure >= 5 * untrained.metres_per_failure", beats);
-        if has_route {
+        if endable.stages {
+            // What is wanted is the way from stage to stage.
+        } else if has_route {
             let along = Term::OfOne(f64::abs, Box::new(figure(Test, "net_route_m")));
             let along_m = ALONG_M_PER_S * seconds;
             let along = compare(GreaterOrEqual, along, Term::Constant(along_m));
@@ -62,6 +66,14 @@ pub(crate) fn default_conditions(endable: Endable, has_route: bool, seconds: f64
         } else {
             ask("gets along", "test.idle <= 0.5", than(LessOrEqual, Test, "idle", MOST_IDLE));
         }
+    }
+    if endable.stages && !endable.goal {
+        let (own, chance) = (figure(Test, "stages_per_1000"), figure(Untrained, "stages_per_1000"));
+        let twice = Term::Binary(Arithmetic::Multiply, Box::new([Term::Constant(2.0), chance]));
+        let more = compare(Greater, own.clone(), twice);
+        let some = compare(Greater, own, Term::Constant(0.0));
+        let text = "test.stages_per_1000 > 2 * untrained.stages_per_1000 && test.stages_per_1000 > 0";
+        ask("goes round", text, Term::And(vec![more, some]));
     }
     conditions
 }

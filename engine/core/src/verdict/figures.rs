@@ -57,6 +57,18 @@ pub struct TestFigures {
     pub does_task: Option<bool>,
     /// What each rule did.
     pub rules: Vec<RuleTotal>,
+    /// Changes of the stage that rules made, and of these, changes to the first.
+    #[serde(default)]
+    pub stages: u64,
+    /// See there.
+    #[serde(default)]
+    pub rounds: u64,
+    /// In how many attempts each stage was entered.
+    #[serde(default)]
+    pub stage_rates: Vec<StageTotal>,
+    /// What each measure came to.
+    #[serde(default)]
+    pub measures: Vec<MeasureTotal>,
     /// What only the conditions of success ask for, such as the gap to a mover that they name.
     #[serde(default)]
     pub asked: Vec<AskedFigure>,
@@ -71,6 +83,28 @@ pub struct RuleTotal {
     pub fired: u64,
     /// Sum of what it added.
     pub total: f64,
+}
+
+/// How often one stage was reached.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StageTotal {
+    /// The stage's name.
+    pub name: String,
+    /// Share of the attempts, the unfinished one included, in which a rule entered it.
+    pub rate: f64,
+}
+
+/// What one measure came to, over all steps; true counts 1, false 0.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MeasureTotal {
+    /// The measure's name.
+    pub name: String,
+    /// Its mean.
+    pub mean: f64,
+    /// The least value.
+    pub least: f64,
+    /// The greatest value.
+    pub greatest: f64,
 }
 
 impl TestFigures {
@@ -104,6 +138,10 @@ pub(crate) enum Source {
     Goal(fn(&TestFigures) -> Option<f64>),
     /// Of the rule that is named.
     Rule(fn(&TestFigures, &RuleTotal) -> f64),
+    /// Of the stage that is named.
+    Stage(fn(&StageTotal) -> f64),
+    /// Of the measure that is named.
+    Measure(fn(&MeasureTotal) -> f64),
     /// Measured where a condition asks for it.
     Asked(Probe),
 }
@@ -115,6 +153,10 @@ pub(crate) enum Takes {
     Nothing,
     /// The name of a rule.
     Rule,
+    /// The name of a stage.
+    Stage,
+    /// The name of a measure.
+    Measure,
     /// The name of a mover of the world.
     Mover,
     /// The name of a mover, and a distance in metres.
@@ -127,6 +169,8 @@ impl Takes {
         match self {
             Self::Nothing => figure.to_owned(),
             Self::Rule => format!("{figure}(\"rule\")"),
+            Self::Stage => format!("{figure}(\"stage\")"),
+            Self::Measure => format!("{figure}(\"measure\")"),
             Self::Mover => format!("{figure}(\"mover\")"),
             Self::MoverAndMetres => format!("{figure}(\"mover\", 0.8)"),
         }
@@ -160,6 +204,8 @@ impl TestFigure {
         match self.source {
             Source::Test(_) | Source::Route(_) | Source::Goal(_) | Source::Asked(Probe::FloorCovered) => Takes::Nothing,
             Source::Rule(_) => Takes::Rule,
+            Source::Stage(_) => Takes::Stage,
+            Source::Measure(_) => Takes::Measure,
             Source::Asked(Probe::GapError) => Takes::MoverAndMetres,
             Source::Asked(Probe::Gap | Probe::ContactsWith) => Takes::Mover,
         }
@@ -197,6 +243,10 @@ const fn route(
     TestFigure { name, unit, about, source: Source::Route(get), window: None }
 }
 
+const fn of_measure(name: &'static str, get: fn(&MeasureTotal) -> f64, about: &'static str) -> TestFigure {
+    TestFigure { name, unit: "of the measure", about, source: Source::Measure(get), window: None }
+}
+
 const fn asked(name: &'static str, unit: &'static str, probe: Probe, about: &'static str) -> TestFigure {
     TestFigure { name, unit, about, source: Source::Asked(probe), window: None }
 }
@@ -225,6 +275,25 @@ pub const FIGURES: &[TestFigure] = &[
         source: Source::Goal(|test| test.goal_s),
         window: None,
     },
+    test("stages_per_1000", "", |test| test.per_1000(test.stages), "Changes of the stage by rules in 1,000 steps.")
+        .and_of_windows(|counts, _| counts.per_1000(counts.window.stages)),
+    test(
+        "rounds_per_1000",
+        "",
+        |test| test.per_1000(test.rounds),
+        "Changes to the first stage by rules in 1,000 steps.",
+    )
+    .and_of_windows(|counts, _| counts.per_1000(counts.window.rounds)),
+    TestFigure {
+        name: "stage_rate",
+        unit: "share",
+        about: "Share of the attempts in which a rule entered that stage, the unfinished attempt included.",
+        source: Source::Stage(|stage| stage.rate),
+        window: None,
+    },
+    of_measure("mean", |measure| measure.mean, "Mean of a measure over all steps; true counts 1, false 0."),
+    of_measure("least", |measure| measure.least, "Its least value."),
+    of_measure("greatest", |measure| measure.greatest, "Its greatest value."),
     test("reward_per_1000", "", |test| test.reinforcement_per_1000, "Sum of the rewards in 1,000 steps.")
         .and_of_windows(|counts, _| counts.window.reinforcement * 1000.0 / counts.window.steps.max(1) as f64),
     TestFigure {

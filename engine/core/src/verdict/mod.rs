@@ -14,7 +14,7 @@ mod term;
 mod window;
 
 pub use asked::{AskedFigure, Probe, Request};
-pub use figures::{FIGURES, RuleTotal, TestFigure, TestFigures};
+pub use figures::{FIGURES, MeasureTotal, RuleTotal, StageTotal, TestFigure, TestFigures};
 pub use judged::{Because, ConditionVerdict, FigureVerdict, SuccessVerdict};
 pub use success::{Success, SuccessCondition};
 pub use term::Subject;

@@ -152,14 +152,14 @@ impl Success {
                 _ if !own.is_empty() => {
                     four.iter().all(|counts| own.iter().all(|condition| condition.term.holds_in_window(counts)))
                 }
-                Endable { failure: true, goal: false } => few,
-                Endable { failure: true, goal: true } => {
+                Endable { failure: true, goal: false, .. } => few,
+                Endable { failure: true, goal: true, .. } => {
                     few && ended.goals > 0 && ended.goals >= GOALS_PER_FAILURE * ended.failures
                 }
-                Endable { failure: false, goal: true } => {
+                Endable { failure: false, goal: true, .. } => {
                     ended.goals > 0 && ended.goals as f64 >= MOST_GOALS * ended.attempts() as f64
                 }
-                Endable { failure: false, goal: false } => false,
+                Endable { failure: false, goal: false, .. } => false,
             }
         };
         windows.windows(GOOD_WINDOWS).position(good).map(|index| index as u64 * WINDOW_STEPS)

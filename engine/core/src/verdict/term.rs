@@ -42,6 +42,10 @@ pub(crate) enum FigureOf {
     Whole,
     /// The rule with this number.
     Rule(usize),
+    /// The stage with this number.
+    Stage(usize),
+    /// The measure with this number.
+    Measure(usize),
     /// What is measured since it is asked for.
     Request(Arc<Request>),
 }
@@ -105,7 +109,7 @@ impl Term {
 
     /// Whether it holds of a window of learning.
     pub(crate) fn holds_in_window(&self, counts: &WindowCounts<'_>) -> bool {
-        self.holds(&|asked| Some(asked.figure.window?(counts, asked.of.rule()))).unwrap_or(false)
+        self.holds(&|asked| Some(asked.figure.window?(counts, asked.of.number()))).unwrap_or(false)
     }
 
     /// All figures that it reads, in their order.
@@ -133,7 +137,9 @@ impl FigureUse {
             Source::Test(get) => Some(get(test)),
             Source::Route(get) => get(test),
             Source::Goal(get) => Some(get(test).unwrap_or(measured.seconds)),
-            Source::Rule(get) => test.rules.get(self.of.rule()).map(|rule| get(test, rule)),
+            Source::Rule(get) => test.rules.get(self.of.number()).map(|rule| get(test, rule)),
+            Source::Stage(get) => test.stage_rates.get(self.of.number()).map(get),
+            Source::Measure(get) => test.measures.get(self.of.number()).map(get),
             Source::Asked(_) => {
                 let name = self.of.request()?.to_string();
                 test.asked.iter().find(|asked| asked.name == name)?.value
@@ -143,9 +149,9 @@ impl FigureUse {
 }
 
 impl FigureOf {
-    /// The number of the rule that is named; 0 where none is.
-    fn rule(&self) -> usize {
-        if let Self::Rule(index) = self { *index } else { 0 }
+    /// The number of the rule, stage or measure that is named; 0 where none is.
+    fn number(&self) -> usize {
+        if let Self::Rule(index) | Self::Stage(index) | Self::Measure(index) = self { *index } else { 0 }
     }
 
     /// What is to be measured.
@@ -155,12 +161,15 @@ impl FigureOf {
 
     /// A figure's name with what stands in its parentheses, for a test with these rules.
     pub(super) fn written(&self, figure: &TestFigure, test: &TestFigures) -> String {
+        let named = |name: Option<&str>| match name {
+            Some(name) => format!("{}(\"{name}\")", figure.name),
+            None => figure.name.to_owned(),
+        };
         match self {
-            Self::Whole => figure.name.to_owned(),
-            Self::Rule(index) => match test.rules.get(*index) {
-                Some(rule) => format!("{}(\"{}\")", figure.name, rule.name),
-                None => figure.name.to_owned(),
-            },
+            Self::Whole => named(None),
+            Self::Rule(index) => named(test.rules.get(*index).map(|rule| rule.name.as_str())),
+            Self::Stage(index) => named(test.stage_rates.get(*index).map(|stage| stage.name.as_str())),
+            Self::Measure(index) => named(test.measures.get(*index).map(|measure| measure.name.as_str())),
             Self::Request(request) => request.to_string(),
         }
     }

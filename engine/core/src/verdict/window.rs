@@ -16,6 +16,10 @@ pub struct Window {
     pub endings: Endings,
     /// Steps in which the body touched something.
     pub contacts: u64,
+    /// Changes of the stage that rules made, and of these, changes to the first.
+    pub stages: u64,
+    /// See there.
+    pub rounds: u64,
 }
 
 /// A window with how often each rule fired in it.

@@ -83,7 +83,7 @@ fn allowed(plan: &Plan, compared: &Compared) -> Option<Allowed> {
         Reach::Commanded => around(fastest(), "the actions"),
         Reach::Measured => around((1.0 + 6.0 * settings.robot.speed_noise) * fastest(), "the wheels"),
         Reach::Actions => between(0.0, actions.len() as f64 - 1.0, "the numbers of the actions"),
-        Reach::States => between(0.0, plan.grid().ok()?.states() as f64 - 1.0, "the numbers of the states"),
+        Reach::States => between(0.0, plan.state_map().ok()?.states() as f64 - 1.0, "the numbers of the states"),
         Reach::Beams => between(0.0, settings.laser.beams as f64, "the numbers of the beams"),
         Reach::Steps => between(0.0, settings.run.steps.max(settings.run.test_steps) as f64, "the steps of a run"),
         Reach::Between(low, high) => between(low, high, if unit == Unit::Share { "shares" } else { "its values" }),

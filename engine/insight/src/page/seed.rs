@@ -187,7 +187,7 @@ fn by_rule(plan: &Plan, tally: &Tally, window: usize) -> Vec<f64> {
 }
 
 fn states(plan: &Plan, policy: &Policy, with_values: bool) -> Result<Vec<StateRow>> {
-    let grid = plan.grid()?;
+    let map = plan.state_map()?;
     let mut met: Vec<(usize, u64)> =
         policy.rows().iter().enumerate().filter_map(|(state, row)| Some((state, row.as_ref()?.visits))).collect();
     met.sort_by_key(|(state, visits)| (std::cmp::Reverse(*visits), *state));
@@ -196,7 +196,8 @@ fn states(plan: &Plan, policy: &Policy, with_values: bool) -> Result<Vec<StateRo
     let rounded = |value: f64| (value * 1e4).round() / 1e4;
     let rows = met.into_iter().filter_map(|(state, visits)| {
         let (row, (best, value)) = (policy.rows().get(state)?.as_ref()?, policy.best(state)?);
-        let cells = grid.cells(state).iter().map(|filled| if *filled { '1' } else { '0' }).collect();
+        let filled = map.describe(state).cells.map_or_else(Vec::new, |cells| cells.filled);
+        let cells = filled.iter().map(|filled| if *filled { '1' } else { '0' }).collect();
         let values = if with_values { row.values.iter().copied().map(rounded).collect() } else { Vec::new() };
         Some(StateRow { state, cells, visits, best, value: rounded(value), values })
     });

@@ -17,6 +17,8 @@ use engine::state::{GridMap, MAX_STATES, StateMap};
 /// The name of the file in a run's folder.
 pub const POLICY_FILE: &str = "policy.toml";
 const FORMAT: u32 = 2;
+/// The format of a policy whose states have several parts.
+const FORMAT_OF_PARTS: u32 = 3;
 
 #[derive(Deserialize)]
 struct PolicyFormat {
@@ -40,6 +42,9 @@ struct PolicyFile {
     actions: Vec<[f64; 2]>,
     #[serde(default)]
     filter: Vec<FilterEntry>,
+    /// The parts of the state, the lowest digit first; none if the grid alone is the state.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    part: Vec<toml::Table>,
     #[serde(default)]
     state: Vec<StateEntry>,
 }
@@ -64,6 +69,8 @@ pub struct StoredPolicy {
     pub grid: GridSettings,
     /// Its actions.
     pub actions: Vec<Twist>,
+    /// The parts of its states; none if the grid alone is the state.
+    pub parts: Vec<toml::Table>,
     /// What it learned.
     pub policy: Policy,
     /// SHA-256 of the `run.toml` of the run that learned it, if it names one.
@@ -89,7 +96,9 @@ fn text_of(
 ) -> Result<String> {
     let unwritten =
         |why: String| Box::new(Diagnostic::new("E-POLICY-FILE", format!("the policy cannot be written: {why}")));
-    let grid = GridMap::settings_from(&map.to_table())
+    let (table, part) = (map.to_table(), parts_of(map));
+    let grid = part.iter().find_map(|part| part.get("grid")?.as_table()).unwrap_or(&table);
+    let grid = GridMap::settings_from(grid)
         .map_err(|key| unwritten(format!("its states do not come from a grid, which has '{key}'")))?;
     let state = policy.rows().iter().enumerate().filter_map(|(index, row)| {
         let row = row.as_ref()?;
@@ -97,7 +106,8 @@ fn text_of(
         Some(StateEntry { index, visits: row.visits, best, values: row.values.clone() })
     });
     let file = PolicyFile {
-        format: FORMAT,
+        format: if part.is_empty() { FORMAT } else { FORMAT_OF_PARTS },
+        part,
         behaviour: behaviour.to_owned(),
         run_sha256: run.map(|run| Digest::of(run.as_bytes()).to_string()),
         rows: grid.rows,
@@ -120,8 +130,9 @@ impl StoredPolicy {
     /// If the file is damaged or of another format.
     pub fn parse(source: &SourceText) -> Result<Self> {
         let format: PolicyFormat = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
-        if format.format != FORMAT {
-            let message = format!("has format {}, this engine reads format {FORMAT}", format.format);
+        if ![FORMAT, FORMAT_OF_PARTS].contains(&format.format) {
+            let message =
+                format!("has format {}, this engine reads formats {FORMAT} and {FORMAT_OF_PARTS}", format.format);
             return Err(unfit(source, &message, "learn the behaviour again"));
         }
         let file: PolicyFile = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
@@ -145,6 +156,7 @@ impl StoredPolicy {
             filters: file.filter.iter().map(FilterEntry::settings).collect(),
             entries: file.filter,
             grid,
+            parts: file.part,
             policy: Policy::new(file.actions.len(), rows),
             actions: file.actions.iter().map(|[linear, angular]| Twist::new(*linear, *angular)).collect(),
         })
@@ -164,6 +176,10 @@ impl StoredPolicy {
         if own.fill != grid.fill {
             return Err([fill(own.fill), fill(grid.fill)]);
         }
+        let (own_parts, parts) = (&self.parts, &parts_of(map));
+        if own_parts != parts {
+            return Err([own_parts, parts].map(|parts| in_words(parts)));
+        }
         if self.policy.rows().len() != states {
             return Err([format!("{} states", self.policy.rows().len()), format!("{states} states")]);
         }
@@ -178,6 +194,27 @@ impl StoredPolicy {
             Some((action, (own, twist))) => Err([motion(action, own), motion(action, twist)]),
             None => Ok(()),
         }
+    }
+}
+
+/// The parts of a map's states; none if it has one.
+fn parts_of(map: &dyn StateMap) -> Vec<toml::Table> {
+    let parts = map.to_table().get("part").and_then(toml::Value::as_array).cloned().unwrap_or_default();
+    parts.iter().filter_map(toml::Value::as_table).cloned().collect()
+}
+
+/// `states of a grid`, `states of camera, stage ("search", "approach")`.
+fn in_words(parts: &[toml::Table]) -> String {
+    let name = |part: &toml::Table| {
+        let text = |key: &str| part.get(key).and_then(toml::Value::as_str);
+        let labels = part.get("labels").and_then(toml::Value::as_array);
+        let labels = labels.map(|labels| labels.iter().filter_map(toml::Value::as_str).collect::<Vec<_>>().join(", "));
+        let name = text("view").or_else(|| text("digit")).unwrap_or("?");
+        labels.map_or_else(|| name.to_owned(), |labels| format!("{name} ({labels})"))
+    };
+    match parts {
+        [] => "states of a grid alone".to_owned(),
+        parts => format!("states of {}", parts.iter().map(name).collect::<Vec<_>>().join(", ")),
     }
 }
 
@@ -259,7 +296,7 @@ mod tests {
     fn the_first_format_is_named_and_not_guessed_at() {
         let old = "format = 1\nbehaviour = \"wall\"\nfilters = [\"sobel(threshold: 60)\"]\n";
         let error = StoredPolicy::parse(&SourceText::new("policy.toml", old)).unwrap_err();
-        assert_eq!(error.message, "'policy.toml' has format 1, this engine reads format 2");
+        assert_eq!(error.message, "'policy.toml' has format 1, this engine reads formats 2 and 3");
     }
 
     #[test]

@@ -115,7 +115,7 @@ fn draw_step(plan: &Plan, playback: &Playback<'_>, title: &str) -> Result<Pictur
         columns,
         shares: &shares,
         occupied: grid.occupied(),
-        filled: &grid.cells(cycle.state()),
+        filled: &cycle.state_map().describe(cycle.state()).cells.map_or_else(Vec::new, |cells| cells.filled),
         state: cycle.state(),
     })
 }
@@ -143,6 +143,10 @@ fn print(console: &mut Console, plan: &Plan, report: &StepReport) -> std::result
             _ => String::new(),
         };
         console.line(&format!("           {from}  {arrow}  {to}{names}"))?;
+    }
+    if !plan.settings.stages.is_empty() {
+        let (from, to) = (&reasons.state.text, &reasons.next_state.text);
+        console.line(&format!("           {from}\n           {to}"))?;
     }
     let [x_m, y_m, yaw_rad] = reasons.pose;
     let touched = if reasons.contact { ", touching something" } else { "" };

@@ -124,7 +124,7 @@ fn entry(plan: &Plan, rescored: &Rescored, state: usize) -> Result<Option<Rescor
     };
     let row = rescored.policy_after.rows().get(state).and_then(Option::as_ref);
     let gain = row.map_or(0.0, |row| after.value - row.values[before.action]);
-    let cells = plan.grid()?.cells(state);
+    let cells = plan.state_map()?.describe(state).cells.map_or_else(Vec::new, |cells| cells.filled);
     Ok(Some(RescoredState { state, cells, visits: rescored.visits(state), before, after, gain }))
 }
 
