@@ -4,11 +4,10 @@ use std::path::Path;
 
 use super::SeedResult;
 use crate::report::{
-    CurveData, PolicyData, PolicyState, TrajectoryData, learning_curve, policy, snapshot_frame, trajectories,
+    CurveData, PolicyData, PolicyState, TrajectoryData, WorldPlan, learning_curve, policy, snapshot_frame, trajectories,
 };
 use engine::diagnostic::Result;
 use engine::experiment::{Learned, Plan, Spread, TestRun, Trail, WINDOW_STEPS};
-use engine::geometry::Point2;
 use engine::learner::PolicyRow;
 
 pub(super) fn draw_curve(folder: &Path, plan: &Plan, results: &[SeedResult]) -> Result<()> {
@@ -39,11 +38,7 @@ pub(super) fn draw_seed(folder: &Path, plan: &Plan, result: &SeedResult) -> Resu
 }
 
 pub(super) fn draw_trails(folder: &Path, plan: &Plan, title: &str, panels: &[(&str, &Trail)]) -> Result<()> {
-    // A lap ends where it begins.
-    let lap = plan.layout.lap.map(|lap| plan.layout.routes[lap].points());
-    let route: Option<Vec<Point2>> = lap.map(|points| points.iter().chain(points.first()).copied().collect());
-    let parts = plan.layout.scene.parts();
-    trajectories(&TrajectoryData { title, parts, route: route.as_deref(), panels })?.write(folder, "trajectories")
+    trajectories(&TrajectoryData { title, world: &WorldPlan::of(plan), panels })?.write(folder, "trajectories")
 }
 
 pub(super) fn draw_frame(folder: &Path, plan: &Plan, tested: &TestRun) -> Result<()> {

@@ -146,7 +146,7 @@ impl Document {
     /// If the grid cannot be made.
     pub fn without_seeds(plan: &Plan) -> Result<Self> {
         let Settings { run, robot, actions, laser, .. } = &plan.settings;
-        let world = Ground::new(&plan.layout);
+        let world = Ground::new(plan);
         let far = world.bounds_m.iter().fold(1.0, |far: f64, at| far.max(at.abs()));
         let beams = laser.beams as usize;
         let every = beams.saturating_sub(1).div_ceil(MOST_SCAN_BEAMS - 1).max(1);

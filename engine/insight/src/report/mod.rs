@@ -30,7 +30,7 @@ pub use disagreements::disagreements_csv;
 pub use frame::{FrameData, FramePanel, frame, snapshot_frame};
 pub use growth::{GrowthGroup, growth};
 pub use picture::Picture;
-pub(crate) use plan::holds;
+pub use plan::WorldPlan;
 pub use policy::{PolicyData, PolicyState, policy};
 pub use policy_diff::{PolicyDiffData, StateChange, policy_diff};
 pub use trajectory::{TrajectoryData, trajectories};

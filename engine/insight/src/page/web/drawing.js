@@ -3,7 +3,7 @@
 const ink = {};
 function readInk() {
   const style = getComputedStyle(document.documentElement);
-  for (const name of ['text', 'quiet', 'line', 'soft', 'paper', 'accent', 'accent-soft', 'wall', 'floor', 'ground', 'route', 'trail',
+  for (const name of ['text', 'quiet', 'line', 'soft', 'paper', 'accent', 'accent-soft', 'wall', 'route', 'trail',
     'before', 'bad']) {
     ink[name] = style.getPropertyValue(`--${name}`).trim();
   }
@@ -18,6 +18,12 @@ function chooseRuleInks(rules) {
   ruleInks = rules.map((rule) => (rule.value > 0 ? good[goods++ % good.length] : bad[bads++ % bad.length]));
 }
 const ruleInk = (rule) => ink.rules[ruleInks[rule]];
+
+/** The colour of what is driven on: three quarters of the way to the page's paper, so that a path can be read on it. */
+function floorInk(colour) {
+  const paper = ink.paper.match(/[0-9a-f]{2}/gi).map((part) => parseInt(part, 16));
+  return `rgb(${colour.map((part, at) => Math.round(part + 0.75 * (paper[at] - part))).join(' ')})`;
+}
 
 /** A canvas in pixels of the screen; false while it has no size. */
 function fit(canvas) {

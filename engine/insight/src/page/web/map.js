@@ -22,17 +22,16 @@ class WorldMap {
     const fromX = left + (width - left - right - spanX) / 2;
     const fromY = above + (height - above - below - spanY) / 2;
     this.view = { floor: [fromX - 1, fromY - 1, spanX + 2, spanY + 2], scale, x: (m) => fromX + (m - x0) * scale, y: (m) => fromY + (y1 - m) * scale };
-    pen.fillStyle = ink.floor;
+    pen.fillStyle = floorInk(doc.world.floor);
     pen.fillRect(fromX, fromY, spanX, spanY);
     pen.save();
     pen.beginPath();
     pen.rect(...this.view.floor);
     pen.clip();
     for (const solid of doc.world.solids) this.solid(pen, solid);
-    if (doc.world.route_m) {
-      const route = doc.world.route_m.map(([x, y]) => [this.view.x(x), this.view.y(y)]);
-      line(pen, route, ink.route, 1, [5, 4]);
-    }
+    const places = (way) => way.map(([x, y]) => [this.view.x(x), this.view.y(y)]);
+    for (const { way_m: way } of doc.world.movers) if (way) line(pen, places(way), ink.quiet, 1, [2, 3]);
+    if (doc.world.route_m) line(pen, places(doc.world.route_m), ink.route, 1, [5, 4]);
     if (track) this.marks(pen, doc, track, litRule);
     pen.restore();
     for (const at of ticks(x0, x1, spanX / 70)) if (this.view.x(at) < fromX + spanX - 8) label(pen, short(at), this.view.x(at), fromY + spanY + 14, 'center');
@@ -63,8 +62,8 @@ class WorldMap {
       return;
     }
     pen.lineWidth = 1;
-    pen.strokeStyle = ink.wall;
-    pen.fillStyle = solid.kind === 'ground' ? ink.ground : ink.wall;
+    pen.strokeStyle = solid.kind === 'ground' ? ink.route : ink.wall;
+    pen.fillStyle = solid.kind === 'ground' ? floorInk(solid.colour) : colour;
     if (solid.kind === 'glass') pen.globalAlpha = 0.35;
     pen.fill();
     pen.globalAlpha = 1;
