@@ -155,7 +155,7 @@ mod tests {
         let mut sheet = Sheet::new(300.0, 300.0, "");
         let axis = |title: &str| Axis { title: title.to_owned(), low: 0.0, high: 10.0, room_px: 40.0, ticks: 2 };
         axes(&mut sheet, (400, 400), (1000, 1000), &axis("x"), &axis("y"));
-        let picture = sheet.finish().unwrap();
+        let picture = sheet.finish("").unwrap();
         let image = image::load_from_memory(&picture.png).unwrap().to_rgb8();
         for at in [100, 175] {
             assert_eq!(image.get_pixel(at, 252).0, FRAME.rgb, "tick below at {at}");

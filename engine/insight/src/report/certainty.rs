@@ -44,5 +44,8 @@ pub fn certainty_grid(
     sheet.image(min, max, width, height, rgb);
     sheet.border(min, max, FRAME);
     route::draw_path(&mut sheet, &plot, path);
-    sheet.finish()
+    sheet.finish(&format!(
+        "What the laser found, light free, dark occupied, grey unknown; path of the robot over {} steps",
+        path.steps()
+    ))
 }

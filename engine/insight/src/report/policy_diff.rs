@@ -85,7 +85,7 @@ pub fn policy_diff(data: &PolicyDiffData<'_>) -> Result<Picture> {
             QUIET.towards(super::sheet::PAPER, 0.6),
         );
     }
-    sheet.finish()
+    sheet.finish(&note)
 }
 
 #[cfg(test)]

@@ -74,6 +74,8 @@ fn assert_well_formed(svg: &str) {
         }
         assert_eq!(tag.matches('"').count() % 2, 0, "{tag}");
     }
+    let shows = svg.split_once("<desc>").and_then(|(_, rest)| rest.split_once("</desc>"));
+    assert!(shows.is_some_and(|(words, _)| words.len() > 20), "it does not say what it shows");
     assert!(open.is_empty() && svg.starts_with("<svg ") && svg.ends_with("</svg>\n"));
     assert!(!svg.contains("NaN") && !svg.contains("\"inf") && !svg.contains(",inf"));
 }
@@ -256,6 +258,32 @@ fn a_policy_shows_the_most_visited_states_in_order() {
     for states in [vec![], vec![state(5, 0, (0.0, 0.0))]] {
         assert_well_formed(&policy(&PolicyData { title: "", rows: 2, columns: 2, states: &states }).unwrap().svg);
     }
+}
+
+#[test]
+fn a_state_that_was_hardly_met_looks_unsure() {
+    let drawn = |visits| {
+        let states = [state(1, visits, (0.2, 0.0)), state(2, 50, (0.2, 0.0))];
+        policy(&PolicyData { title: "policy", rows: 2, columns: 2, states: &states }).unwrap().svg
+    };
+    let strokes = |svg: &str| svg.matches("stroke=\"#8c959f\" stroke-opacity").count();
+    assert!(strokes(&drawn(9)) > strokes(&drawn(10)) + 5);
+    assert!(drawn(10).contains("met fewer than 10 times, unsure"));
+}
+
+#[test]
+fn the_paths_of_many_seeds_have_one_that_is_strong() {
+    let trails: Vec<Trail> =
+        (0..3).map(|seed| Trail { legs: vec![circle(50)], failures: vec![[1.0, 1.0]; seed] }).collect();
+    let (parts, all) = (square(), trails.iter().collect::<Vec<_>>());
+    let data = PathsData { title: "all", world: &WorldPlan::standing(&parts), paths: &all, strong: (1, 7) };
+    let picture = paths(&data).unwrap();
+    assert_well_formed(&picture.svg);
+    assert!(picture.svg.contains("seed 7, with the median failures"));
+    assert!(picture.svg.contains("Paths of 3 seeds in their tests, failures: 3; seed 7 is drawn strong"));
+    // The other two have one line each.
+    assert_eq!(picture.svg.matches("stroke=\"#57606a\" stroke-opacity=\"0.55\"").count(), 2);
+    assert!(paths(&PathsData { paths: &[], ..data }).is_ok());
 }
 
 #[test]

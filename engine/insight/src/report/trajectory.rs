@@ -49,7 +49,17 @@ pub fn trajectories(data: &TrajectoryData<'_>) -> Result<Picture> {
         route::draw_path(&mut sheet, &plot, path);
     }
     explain(&mut sheet, data.world);
-    sheet.finish()
+    sheet.finish(&shows(data.world, data.panels))
+}
+
+/// Each panel in words, and what drives by itself.
+fn shows(world: &WorldPlan<'_>, panels: &[(&str, &Trail)]) -> String {
+    let panel = |(name, path): &(&str, &Trail)| {
+        let (steps, failures) = (path.steps(), path.failures.len());
+        format!("{name}: path of the robot over {steps} steps, failures: {failures}")
+    };
+    let movers = world.movers.iter().map(|mover| format!("mover: {}", mover.name));
+    panels.iter().map(panel).chain(movers).collect::<Vec<_>>().join("; ")
 }
 
 /// The part of the floor plan that is shown, metres.

@@ -71,10 +71,10 @@ class WorldMap {
   }
 
   marks(pen, doc, track, litRule) {
-    const shown = doc.rules.map((_, rule) => rule).filter((rule) => marked(doc, rule) && (litRule === null || litRule === rule));
+    // A rule that fires at most steps would cover the plan; it is drawn when it is pointed at.
+    const shown = doc.rules.map((_, rule) => rule).filter((rule) => (litRule === null ? track.firings(rule) < track.count / 2 : litRule === rule));
     for (const rule of shown) {
-      let count = 0;
-      for (let index = 0; index < track.count; index += 1) count += track.fired(index, rule);
+      const count = track.firings(rule);
       // What fires at every turn is a shade; what fires seldom is an event.
       const crowd = count > MANY_MARKS;
       const strength = litRule === rule ? 0.85 : 0.5;
@@ -83,9 +83,7 @@ class WorldMap {
       for (let index = 0; index < track.count; index += 1) {
         if (!track.fired(index, rule)) continue;
         const [x, y] = [this.view.x(track.x[index] * doc.unit_m), this.view.y(track.y[index] * doc.unit_m)];
-        pen.beginPath();
-        pen.arc(x, y, crowd ? 2 : litRule === rule ? 4 : 2.5, 0, 2 * Math.PI);
-        pen.fill();
+        ruleMark(pen, rule, x, y, crowd ? 2 : litRule === rule ? 4.5 : 3.5);
       }
     }
     pen.globalAlpha = 1;
@@ -196,9 +194,6 @@ class WorldMap {
     pen.restore();
   }
 }
-
-/** `fn reward` speaks at nearly every step; it is no event to mark. */
-const marked = (doc, rule) => doc.rules[rule].value !== null;
 
 /** The robot's pose a share of the way from the step before, where no recovery lies between. */
 function between(track, index, share, unit) {
