@@ -220,7 +220,11 @@ function drawFrame(now) {
     map.drawOver(app.doc, steps, app.step, app.share);
     timeline.drawOver(app.step + app.share - 1);
   }
-  if (stale.base || (stale.moment && !app.playing)) say(app, seedView(), steps, index);
+  // While it plays, once a second is enough for whoever listens.
+  if (stale.base || (stale.moment && (!app.playing || now - drawFrame.said > 1000))) {
+    say(app, seedView(), steps, index);
+    drawFrame.said = now;
+  }
   if (curve.stale) curve.drawOver(app.phase === 'learning' ? Math.floor(app.step / app.doc.window_steps) : null);
   Object.assign(stale, { base: false, moment: false, motion: false, lit: false });
 }
