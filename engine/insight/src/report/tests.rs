@@ -4,10 +4,13 @@ use filter_api::Format;
 use image::GenericImageView;
 
 use super::*;
+use engine::diagnostic::SourceText;
 use engine::experiment::Trail;
 use engine::geometry::{Point3, Twist, Vector3};
 use engine::random::Random;
 use engine::sensors::observation::Image;
+use engine::settings::BodyShape;
+use engine::world::Layout;
 use engine::world::scene::{Light, Material, SceneParts, Shape, Solid, Texture};
 
 fn solid(shape: Shape, x: f64, y: f64, yaw_rad: f64) -> Solid {
@@ -157,6 +160,29 @@ fn what_the_robot_drives_on_is_light_and_all_else_has_its_own_colour() {
     let (own, light) = ("fill=\"#c8281e\"", "fill=\"#f1c9c7\"");
     let drawn = both(&world(vec![stripe, platform]), &Trail::default()).svg;
     assert_eq!((drawn.matches(own).count(), drawn.matches(light).count()), (2, 4), "{drawn}");
+}
+
+#[test]
+fn a_mover_stands_where_it_is_at_the_end_of_the_shown_time_and_its_way_is_drawn() {
+    let text = "[[material]]\nname = \"green\"\ncolour = [1, 200, 3]\n[[start]]\nposition_m = [0, 0]\n\
+        [[route]]\nname = \"patrol\"\npoints_m = [[-4, 2], [4, 2]]\n\
+        [[mover]]\nname = \"guard\"\nroute = \"patrol\"\nspeed_m_per_s = 0.1\noffset_m = 0\n\
+        boxes = [{ centre_m = [0, 0, 0.2], size_m = [0.4, 0.4, 0.4], material = \"green\" }]\n";
+    let layout = Layout::parse(SourceText::new("guard.toml", text), &BodyShape::pioneer2at()).unwrap();
+    let (routes, movers) = (layout.routes.as_slice(), layout.movers.as_slice());
+    let world = WorldPlan { routes, movers, step_s: 0.5, ..WorldPlan::standing(layout.scene.parts()) };
+    let trail = |steps: usize| Trail { legs: vec![vec![[0.0, 0.0]; steps + 1]], failures: vec![] };
+    let panels: [(&str, &Trail); 2] = [("early", &trail(20)), ("late", &trail(80))];
+    let svg = trajectories(&TrajectoryData { title: "guard", world: &world, panels: &panels }).unwrap().svg;
+    let corners: Vec<f64> = (svg.lines().filter(|line| line.contains("fill=\"#01c803\"")))
+        .map(|line| line.split(['"', ',']).nth(1).unwrap().parse().unwrap())
+        .collect();
+    let [early, late] = corners[..] else { panic!("{svg}") };
+    // In the second panel it is 3 m farther on; a panel begins 684 px after the other, and is 594 px and 8.48 m wide.
+    assert!((late - early - 684.0 - 3.0 * 594.0 / 8.48).abs() < 1.0, "{early} {late}");
+    for words in ["mover at the end", "way of a mover", "path of the robot over 80 steps", "mover: guard"] {
+        assert!(svg.contains(words), "{words}");
+    }
 }
 
 #[test]

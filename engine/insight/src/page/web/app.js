@@ -208,7 +208,7 @@ function drawFrame(now) {
   const steps = track();
   if (stale.base) {
     map.drawBase(app.doc, steps, app.litRule);
-    $('map-note').textContent = steps ? `${app.phase}: the last ${TRAIL_STEPS} steps, and where rules fired; metres` : 'these steps are not in this file';
+    $('map-note').textContent = mapNote(app.doc, steps, app.phase);
     curve.drawBase(app.doc, seedView(), app.before);
     timeline.drawBase(app.doc, steps, app.litRule, app.phase === 'learning' ? app.doc.swaps : []);
     curve.stale = true;

@@ -71,13 +71,12 @@ class WorldMap {
   }
 
   marks(pen, doc, track, litRule) {
-    // A rule that fires at most steps would cover the plan; it is drawn when it is pointed at.
-    const shown = doc.rules.map((_, rule) => rule).filter((rule) => (litRule === null ? track.firings(rule) < track.count / 2 : litRule === rule));
+    const shown = doc.rules.map((_, rule) => rule).filter((rule) => (litRule === null ? !covers(track, rule) : litRule === rule));
     for (const rule of shown) {
       const count = track.firings(rule);
       // What fires at every turn is a shade; what fires seldom is an event.
       const crowd = count > MANY_MARKS;
-      const strength = litRule === rule ? 0.85 : 0.5;
+      const strength = litRule === rule ? 0.95 : 0.75;
       pen.fillStyle = ruleInk(rule);
       pen.globalAlpha = crowd ? Math.max(0.12, strength * Math.sqrt(MANY_MARKS / count)) : strength;
       for (let index = 0; index < track.count; index += 1) {
@@ -193,6 +192,16 @@ class WorldMap {
     }
     pen.restore();
   }
+}
+
+/** A rule that fires at most steps would cover the plan; it is drawn only when it is pointed at. */
+const covers = (track, rule) => track.firings(rule) > 0 && track.firings(rule) >= track.count / 2;
+
+/** What is drawn, in words. */
+function mapNote(doc, track, phase) {
+  if (!track) return 'these steps are not in this file';
+  const left = doc.rules.filter((_, rule) => covers(track, rule)).map((rule) => rule.name);
+  return `${phase}: the last ${TRAIL_STEPS} steps, and where rules fired${left.length ? `, but ${left.join(', ')}, which fired at most steps` : ''}; metres`;
 }
 
 /** The robot's pose a share of the way from the step before, where no recovery lies between. */
