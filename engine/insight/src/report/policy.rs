@@ -194,11 +194,16 @@ fn explain(sheet: &mut Sheet) {
         LegendEntry { sign: &shades, words: "filled cells, stronger with more visits" },
     ];
     legend(sheet, end, &entries);
+    explain_unsure(sheet, (end.0, end.1 + units(24.0)));
+    sheet.text(words("below each: state and value", spot(MARGIN_PX, BELOW_TITLE_PX + 6.0), SMALL_PX, QUIET));
+}
+
+/// The line of a legend that ends at `end` and says what hatching means.
+pub(super) fn explain_unsure(sheet: &mut Sheet, end: Spot) {
     let unsure = |sheet: &mut Sheet, from: Spot, to: Spot| {
         sheet.rect(from, to, PAPER.towards(BLUE, 0.4));
         hatch(sheet, from, to, units(6.0));
     };
     let said = format!("hatched, pale arrow: met fewer than {FEW_VISITS} times, unsure");
-    legend(sheet, (end.0, end.1 + units(24.0)), &[LegendEntry { sign: &unsure, words: &said }]);
-    sheet.text(words("below each: state and value", spot(MARGIN_PX, BELOW_TITLE_PX + 6.0), SMALL_PX, QUIET));
+    legend(sheet, end, &[LegendEntry { sign: &unsure, words: &said }]);
 }
