@@ -45,6 +45,18 @@ fn the_page_of_a_run_plays_scrubs_and_explains() {
     page.wait_for(&format!("{step} === 1"));
     page.key("ArrowRight", 8);
     page.wait_for(&format!("{step} === 101"));
+    let said = |page: &mut Chromium, id: &str| {
+        page.value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))");
+        let label = page.value(&format!("document.querySelector('#{id} canvas').ariaLabel"));
+        label.as_str().unwrap().to_owned()
+    };
+    let plan = said(&mut page, "map");
+    assert!(
+        plan.starts_with("plan of the world small, learning: path of the robot over 102 steps up to step 101"),
+        "{plan}"
+    );
+    assert!(said(&mut page, "curve").starts_with("learning curve of seed 1: reward per 400 steps"));
+    assert!(said(&mut page, "timeline").starts_with("timeline of learning, 800 steps, at step 101: too close fired"));
     page.key("9", 0);
     page.key(" ", 0);
     page.wait_for(&format!("{step} === 799 && document.getElementById('play').textContent === 'Play'"));
@@ -107,6 +119,32 @@ fn all_that_drives_by_itself_is_drawn() {
     let after = [pink, green].map(|colour| column(&mut page, colour).as_f64().expect(colour));
     assert!(after[0] > before[0] && after[1] != before[1], "{before:?} {after:?}");
     page.picture(&pictures().join("two-movers.png"));
+    assert_eq!(page.complaints(), [] as [String; 0]);
+}
+
+#[test]
+fn a_computed_reward_has_its_rows_and_its_trace_and_seeds_have_a_list() {
+    let bench = Bench::new();
+    bench.write("computed.rhai", format!("{SCRIPT}fn reward(facts) {{ 0.1 * facts.action.linear }}\n"));
+    for name in ["short", "computed"] {
+        bench.engine(&["run", &format!("{name}.rhai"), "--seeds", "3"]);
+    }
+    let url = |name: &str| format!("file://{}", bench.path().join(format!("runs/{name}/1-3/report.html")).display());
+    let Some(mut page) = open(&url("short")) else { return };
+    let height = "document.getElementById('timeline').clientHeight";
+    page.wait_for(&format!("{height} > 0 && document.querySelector('#timeline canvas').ariaLabel.includes('fired')"));
+    let without = page.value(height).as_i64().unwrap();
+    assert_eq!(page.value("document.querySelectorAll('#seeds tbody tr').length"), 3);
+    page.click_on("document.querySelector('#seeds tr:not(.now) button')");
+    page.wait_for(
+        "document.querySelector('#seeds .now th').textContent === document.querySelector('#seed option:checked').text",
+    );
+    page.go(&url("computed"));
+    page.wait_for("document.querySelector('#timeline canvas')?.ariaLabel.includes('; reward fired ')");
+    // A row for the function, and the trace.
+    assert!(page.value(height).as_i64().unwrap() >= without + 13 + 30);
+    page.wait_for("document.querySelectorAll('#script .fired .chip').length > 0");
+    page.picture(&pictures().join("computed.png"));
     assert_eq!(page.complaints(), [] as [String; 0]);
 }
 

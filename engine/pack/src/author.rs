@@ -16,8 +16,7 @@ use super::{Digest, MAX_MANIFEST_BYTES, MAX_PACK_BYTES, MAX_SEEDS, Pack, PackNam
 use engine::diagnostic::{Diagnostic, Result, SourceText, nearest_name, printable};
 use engine::experiment::{Overrides, Progress};
 use engine::filter::Sources;
-use engine::geometry::Point2;
-use insight::report::{TrajectoryData, trajectories};
+use insight::report::{TrajectoryData, WorldPlan, trajectories};
 
 /// The author's file in the folder.
 pub(super) const AUTHOR_FILE: &str = "pack.toml";
@@ -191,11 +190,9 @@ fn assemble(origin: &Path, mut manifest: Manifest, files: &BTreeMap<EntryPath, V
 fn picture(runnable: &Runnable, proof: &Proof) -> Result<Vec<u8>> {
     let plan = &runnable.plan;
     let title = format!("{} in {}, seed {}", plan.behaviour.name(), plan.layout.name, proof.claim.seed);
-    let route: Option<Vec<Point2>> = plan.layout.lap.map(|lap| plan.layout.routes[lap].points().to_vec());
     let tested = ("test: first 800 steps", &proof.tested.trail);
     let panels: Vec<_> = proof.early.iter().map(|early| ("learning: first 400 steps", early)).chain([tested]).collect();
-    let parts = plan.layout.scene.parts();
-    Ok(trajectories(&TrajectoryData { title: &title, parts, route: route.as_deref(), panels: &panels })?.png)
+    Ok(trajectories(&TrajectoryData { title: &title, world: &WorldPlan::of(plan), panels: &panels })?.png)
 }
 
 /// The folder holds exactly what `files` lists, apart from what the engine and the author's tools leave beside it.

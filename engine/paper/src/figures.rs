@@ -10,7 +10,7 @@ use engine::experiment::{
     CertaintyGrid, Cycle, Each, Overrides, Plan, Snapshot, Spread, Step, Trail, WINDOW_STEPS, test_and_watch,
 };
 use insight::report::{
-    CurveData, Picture, TrajectoryData, certainty_grid, learning_curve, snapshot_frame, trajectories,
+    CurveData, Picture, TrajectoryData, WorldPlan, certainty_grid, learning_curve, snapshot_frame, trajectories,
 };
 
 /// Steps of the drive that the certainty grid is made from.
@@ -101,12 +101,10 @@ fn curve(job: &JobResult, beside: &'static str, name: &str, number: u32) -> Resu
 }
 
 fn paths(plan: &Plan, outcome: &Outcome, beside: &'static str, name: &str, number: u32) -> Result<Figure> {
-    let route = plan.layout.lap.map(|lap| plan.layout.routes[lap].points().to_vec());
     let panels: [(&str, &Trail); 2] =
         [("a) first 400 steps of learning", &outcome.early), ("b) test: 800 steps", &outcome.tested.trail)];
     let title = format!("Paths of {name}");
-    let (parts, route) = (plan.layout.scene.parts(), route.as_deref());
-    let picture = trajectories(&TrajectoryData { title: &title, parts, route, panels: &panels })?;
+    let picture = trajectories(&TrajectoryData { title: &title, world: &WorldPlan::of(plan), panels: &panels })?;
     let prey = if plan.layout.movers.is_empty() { "" } else { " The dashed line is the prey's path." };
     let caption = format!(
         "Seed {}, the one with the median failures in its test. Crosses are failures, small dots where recovery put the \

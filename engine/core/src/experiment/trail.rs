@@ -16,6 +16,14 @@ pub struct Trail {
     pub failures: Vec<[f32; 2]>,
 }
 
+impl Trail {
+    /// How many steps it holds: each ends at a place, and each leg begins at one.
+    #[must_use]
+    pub fn steps(&self) -> usize {
+        self.legs.iter().map(|leg| leg.len().saturating_sub(1)).sum()
+    }
+}
+
 /// Records a trail of so many steps.
 #[derive(Debug, Clone)]
 pub(super) struct Recorder {

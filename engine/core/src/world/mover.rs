@@ -20,6 +20,12 @@ pub struct Mover {
 }
 
 impl Mover {
+    /// Its way, of the layout's routes.
+    #[must_use]
+    pub fn way<'a>(&self, routes: &'a [Route]) -> Option<&'a Route> {
+        routes.get(self.route)
+    }
+
     /// Where it is at a time.
     #[must_use]
     pub fn pose_at(&self, routes: &[Route], time_s: f64) -> Pose {

@@ -55,6 +55,11 @@ impl Route {
         &self.points
     }
 
+    /// The points as a line to draw: a closed route ends where it begins.
+    pub fn drawn(&self) -> impl Iterator<Item = Point2> {
+        self.points.iter().chain(self.points.first().filter(|_| self.closed)).copied()
+    }
+
     /// The length, metres; of a closed route, that of one lap.
     #[must_use]
     pub(crate) fn length_m(&self) -> f64 {

@@ -9,6 +9,8 @@ use std::f64::consts::TAU;
 
 /// Points of a round footprint's rim under which ground is looked for.
 const RIM_POINTS: usize = 16;
+/// Solids that are no farther apart meet: the numbers of a world file are rounded.
+const MEETING_M: f64 = 0.005;
 
 /// The solids of a scene, prepared for contact and for standing on.
 #[derive(Debug, Clone)]
@@ -59,6 +61,32 @@ impl Terrain {
             return f64::INFINITY;
         }
         self.highest_carrying_m.map_or(0.0, |top_m| top_m.max(0.0))
+    }
+
+    /// For each solid, whether a body drives on it: it carries, or its top is within a step of the floor or of a solid
+    /// beside it that is driven on.
+    pub(super) fn driven_on(&self, scene: &Scene, step_m: f64) -> Vec<bool> {
+        let solids = &scene.parts().solids;
+        let near = |a: usize, b: usize| {
+            let ((a_min, a_max), (b_min, b_max)) = (solids[a].bounds(), solids[b].bounds());
+            let meet = |a: (f64, f64), b: (f64, f64)| a.0 <= b.1 + MEETING_M && b.0 <= a.1 + MEETING_M;
+            meet((a_min.x, a_max.x), (b_min.x, b_max.x)) && meet((a_min.y, a_max.y), (b_min.y, b_max.y))
+        };
+        let top_m = |index: usize| self.obstacles[index].top_m;
+        let mut driven: Vec<bool> = (0..solids.len())
+            .map(|index| solids[index].collides && (self.carries[index] || top_m(index) <= step_m))
+            .collect();
+        let mut reached: Vec<usize> = (0..solids.len()).filter(|index| driven[*index]).collect();
+        while let Some(from) = reached.pop() {
+            for to in 0..solids.len() {
+                let steps = solids[to].collides && !driven[to] && (top_m(to) - top_m(from)).abs() <= step_m;
+                if steps && near(from, to) {
+                    driven[to] = true;
+                    reached.push(to);
+                }
+            }
+        }
+        driven
     }
 
     pub(super) fn obstacle(&self, index: u32) -> &Obstacle {

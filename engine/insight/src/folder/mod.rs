@@ -121,6 +121,9 @@ impl RunFolder {
             }
             write_seed(&folder, plan, result)?;
         }
+        if self.many {
+            pictures::draw_paths(&self.path, plan, results)?;
+        }
         if plan.learns() {
             self.show_learned(plan, results, checked)
         } else {

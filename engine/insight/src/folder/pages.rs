@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::SeedResult;
 use crate::lint::Report;
-use crate::page::{Document, Moments, SeedData, page};
+use crate::page::{Document, Moments, SeedData, median_seed, page};
 use crate::report::write_atomic;
 use crate::store::{LOG_FILE, RUN_FILE, read_log, read_stored};
 use engine::diagnostic::{Diagnostic, Result};
@@ -18,13 +18,10 @@ const MOST_SEEDS: usize = 3;
 /// Writes the page of a run; of many seeds, the median one and the worst bring their steps.
 pub(super) fn write_page(folder: &Path, plan: &Plan, results: &[SeedResult], checked: Option<&Report>) -> Result<()> {
     let mut order: Vec<usize> = (0..results.len()).collect();
-    let failures = |index: usize| results[index].run.summary.test.failures_per_1000;
-    order.sort_by(|a, b| failures(*b).total_cmp(&failures(*a)));
-    let median = order[order.len() / 2];
+    let failures = failures(results);
+    order.sort_by(|a, b| failures[*b].total_cmp(&failures[*a]));
     order.truncate(MOST_SEEDS - 1);
-    if !order.contains(&median) {
-        order.push(median);
-    }
+    order.extend(median_seed(&failures, |_| true).filter(|median| !order.contains(median)));
     let mut read = Vec::new();
     for index in order {
         if results[index].log.is_none() {
@@ -54,6 +51,11 @@ pub(super) fn write_page(folder: &Path, plan: &Plan, results: &[SeedResult], che
         document = document.with_check(report);
     }
     write_atomic(&folder.join("report.html"), page(Some(&document))?.html.as_bytes())
+}
+
+/// Failures of each seed in 1,000 steps of its test.
+pub(super) fn failures(results: &[SeedResult]) -> Vec<f64> {
+    results.iter().map(|result| result.run.summary.test.failures_per_1000).collect()
 }
 
 /// The log that a seed of many left in its folder.

@@ -3,12 +3,14 @@
 use std::path::Path;
 
 use super::SeedResult;
+use super::pages::failures;
+use crate::page::median_seed;
 use crate::report::{
-    CurveData, PolicyData, PolicyState, TrajectoryData, learning_curve, policy, snapshot_frame, trajectories,
+    CurveData, PathsData, PolicyData, PolicyState, TrajectoryData, WorldPlan, learning_curve, paths, policy,
+    snapshot_frame, trajectories,
 };
 use engine::diagnostic::Result;
 use engine::experiment::{Learned, Plan, Spread, TestRun, Trail, WINDOW_STEPS};
-use engine::geometry::Point2;
 use engine::learner::PolicyRow;
 
 pub(super) fn draw_curve(folder: &Path, plan: &Plan, results: &[SeedResult]) -> Result<()> {
@@ -39,11 +41,21 @@ pub(super) fn draw_seed(folder: &Path, plan: &Plan, result: &SeedResult) -> Resu
 }
 
 pub(super) fn draw_trails(folder: &Path, plan: &Plan, title: &str, panels: &[(&str, &Trail)]) -> Result<()> {
-    // A lap ends where it begins.
-    let lap = plan.layout.lap.map(|lap| plan.layout.routes[lap].points());
-    let route: Option<Vec<Point2>> = lap.map(|points| points.iter().chain(points.first()).copied().collect());
-    let parts = plan.layout.scene.parts();
-    trajectories(&TrajectoryData { title, parts, route: route.as_deref(), panels })?.write(folder, "trajectories")
+    trajectories(&TrajectoryData { title, world: &WorldPlan::of(plan), panels })?.write(folder, "trajectories")
+}
+
+/// Draws the test's path of every seed, the median one strong.
+pub(super) fn draw_paths(folder: &Path, plan: &Plan, results: &[SeedResult]) -> Result<()> {
+    let Some(median) = median_seed(&failures(results), |_| true) else { return Ok(()) };
+    let trails: Vec<&Trail> = results.iter().map(|result| &result.run.tested.trail).collect();
+    let title = format!(
+        "{} in {}, {} seeds: first 800 steps of the test",
+        plan.behaviour.name(),
+        plan.layout.name,
+        results.len()
+    );
+    let strong = (median, results[median].run.summary.seed);
+    paths(&PathsData { title: &title, world: &WorldPlan::of(plan), paths: &trails, strong })?.write(folder, "paths")
 }
 
 pub(super) fn draw_frame(folder: &Path, plan: &Plan, tested: &TestRun) -> Result<()> {

@@ -117,7 +117,7 @@ impl Document {
         }
         let mut bytes = 0;
         // The median robot is the one to look at; then the others in their order.
-        let first = if moments.seeds.is_some() { Some(0) } else { median_seed(&document.seeds) };
+        let first = if moments.seeds.is_some() { Some(0) } else { first_seed(&document.seeds) };
         let order = first.into_iter().chain((0..seeds.len()).filter(|index| Some(*index) != first));
         for index in order.take(moments.seeds.unwrap_or(usize::MAX)) {
             if bytes > MOST_EMBEDDED_BYTES / 2 && bytes + bytes_of_next(bytes, &document) > MOST_EMBEDDED_BYTES {
@@ -146,7 +146,7 @@ impl Document {
     /// If the grid cannot be made.
     pub fn without_seeds(plan: &Plan) -> Result<Self> {
         let Settings { run, robot, actions, laser, .. } = &plan.settings;
-        let world = Ground::new(&plan.layout);
+        let world = Ground::new(plan);
         let far = world.bounds_m.iter().fold(1.0, |far: f64, at| far.max(at.abs()));
         let beams = laser.beams as usize;
         let every = beams.saturating_sub(1).div_ceil(MOST_SCAN_BEAMS - 1).max(1);
@@ -205,12 +205,18 @@ impl Document {
     }
 }
 
-/// The seed to look at first: among those that bring their steps, the one whose failures are nearest to the median of all.
-fn median_seed(seeds: &[SeedView]) -> Option<usize> {
-    let failures = |seed: &SeedView| seed.test.as_ref().map_or(0.0, |test| test.failures_per_1000);
-    let median = seeds.iter().map(failures).collect::<Sorted>().upper_median()?;
-    let away = |index: &usize| (failures(&seeds[*index]) - median).abs();
-    (0..seeds.len()).filter(|index| seeds[*index].brings_steps).min_by(|a, b| away(a).total_cmp(&away(b)))
+/// The seed to look at first: among those that bring their steps, the one nearest to the median of all.
+fn first_seed(seeds: &[SeedView]) -> Option<usize> {
+    let failures: Vec<f64> =
+        seeds.iter().map(|seed| seed.test.as_ref().map_or(0.0, |test| test.failures_per_1000)).collect();
+    median_seed(&failures, |index| seeds[index].brings_steps)
+}
+
+/// Of the seeds that are `at_hand`, the first whose failures are nearest to the median of all.
+pub(crate) fn median_seed(failures: &[f64], at_hand: impl Fn(usize) -> bool) -> Option<usize> {
+    let median = failures.iter().copied().collect::<Sorted>().upper_median()?;
+    let away = |index: &usize| (failures[*index] - median).abs();
+    (0..failures.len()).filter(|index| at_hand(*index)).min_by(|a, b| away(a).total_cmp(&away(b)))
 }
 
 /// A seed takes about as much room as those before it.

@@ -2,9 +2,10 @@
 
 use serde::Serialize;
 
-use crate::report::holds;
-use engine::world::scene::{Material, Shape, Solid};
-use engine::world::{Layout, Mover};
+use crate::report::WorldPlan;
+use engine::experiment::Plan;
+use engine::world::scene::{SceneParts, Shape, Solid};
+use engine::world::{Mover, Route};
 
 /// What stands in a world.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -13,6 +14,8 @@ pub struct Ground {
     pub name: String,
     /// Least x and y, greatest x and y of all that is drawn, metres.
     pub bounds_m: [f64; 4],
+    /// The floor's colour.
+    pub floor: [u8; 3],
     /// The solids, the lowest first.
     pub solids: Vec<SolidOutline>,
     /// The lap that the world's author had in mind, metres.
@@ -28,6 +31,8 @@ pub struct MoverOutline {
     pub name: String,
     /// Its solids around its own origin, x forward.
     pub solids: Vec<SolidOutline>,
+    /// Its way, metres; null if that is the lap.
+    pub way_m: Option<Vec<[f64; 2]>>,
 }
 
 /// One solid.
@@ -35,7 +40,7 @@ pub struct MoverOutline {
 pub struct SolidOutline {
     /// `wall` stops the robot, `ground` is driven on, `glass` stops it unseen by the laser, `paint` is flat.
     pub kind: &'static str,
-    /// Its colour, for paint and prey.
+    /// Its colour under full light.
     pub colour: [u8; 3],
     /// Its corners, metres; empty for a circle.
     pub corners_m: Vec<[f64; 2]>,
@@ -44,47 +49,51 @@ pub struct SolidOutline {
 }
 
 impl Ground {
-    /// The outlines of a world.
+    /// The outlines of a plan's world.
     #[must_use]
-    pub fn new(layout: &Layout) -> Self {
-        let parts = layout.scene.parts();
-        let route_m = layout.lap.map(|lap| {
-            let route = &layout.routes[lap];
-            let back = route.points().first().filter(|_| route.closed);
-            route.points().iter().chain(back).map(|at| [milli(at.x), milli(at.y)]).collect::<Vec<_>>()
-        });
-        let starts: Vec<[f64; 2]> = layout.starts.iter().map(|start| [start.x_m, start.y_m]).collect();
-        let driven: Vec<[f64; 2]> = route_m.iter().flatten().chain(&starts).copied().collect();
-        let mut solids: Vec<&Solid> = parts.solids.iter().collect();
-        solids.sort_by(|a, b| {
+    pub fn new(plan: &Plan) -> Self {
+        let (layout, world) = (&plan.layout, WorldPlan::of(plan));
+        let parts = world.parts;
+        let mut solids: Vec<(&Solid, bool)> = parts.solids.iter().zip(world.driven_on.iter().copied()).collect();
+        solids.sort_by(|(a, _), (b, _)| {
             let key = |solid: &Solid| (solid.collides, solid.bounds().1.z);
             key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal)
         });
-        let outline = |solid: &&Solid| SolidOutline::new(solid, parts.materials.get(solid.material), &driven);
-        let mover = |mover: &Mover| MoverOutline {
+        let mover = |mover: &'_ Mover| MoverOutline {
             name: mover.name.clone(),
-            solids: mover.solids.iter().map(|solid| outline(&solid)).collect(),
+            solids: mover.solids.iter().map(|solid| SolidOutline::new(solid, parts, false)).collect(),
+            way_m: world.way(mover).map(points),
         };
+        let starts = layout.starts.iter().map(|start| [start.x_m, start.y_m]);
+        let ways = world.ways().chain(world.lap).flat_map(points);
         Self {
             name: layout.name.clone(),
-            bounds_m: bounds(&parts.solids, &driven),
-            solids: solids.iter().map(outline).collect(),
-            route_m,
+            bounds_m: bounds(&parts.solids, &starts.chain(ways).collect::<Vec<_>>()),
+            floor: colour(parts, parts.floor),
+            solids: solids.iter().map(|(solid, driven_on)| SolidOutline::new(solid, parts, *driven_on)).collect(),
+            route_m: world.lap.map(points),
             movers: layout.movers.iter().map(mover).collect(),
         }
     }
 }
 
+fn points(route: &Route) -> Vec<[f64; 2]> {
+    route.drawn().map(|at| [milli(at.x), milli(at.y)]).collect()
+}
+
+fn colour(parts: &SceneParts, material: usize) -> [u8; 3] {
+    parts.materials.get(material).map_or([128; 3], |material| material.colour)
+}
+
 impl SolidOutline {
-    fn new(solid: &Solid, material: Option<&Material>, driven: &[[f64; 2]]) -> Self {
-        let ramp = matches!(solid.shape, Shape::Ramp { .. });
+    fn new(solid: &Solid, parts: &SceneParts, driven_on: bool) -> Self {
         let kind = match solid {
             _ if !solid.collides => "paint",
-            _ if ramp || driven.iter().any(|at| holds(solid, *at)) => "ground",
-            _ if material.is_some_and(|material| !material.laser) => "glass",
+            _ if driven_on => "ground",
+            _ if parts.materials.get(solid.material).is_some_and(|material| !material.laser) => "glass",
             _ => "wall",
         };
-        let colour = material.map_or([128; 3], |material| material.colour);
+        let colour = colour(parts, solid.material);
         let (x, y) = (solid.centre.x, solid.centre.y);
         if let Shape::Cylinder { radius_m, .. } = solid.shape {
             let circle_m = Some([milli(x), milli(y), milli(radius_m)]);

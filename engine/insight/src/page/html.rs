@@ -16,8 +16,10 @@ const SCRIPTS: &[&str] = &[
     include_str!("web/timeline.js"),
     include_str!("web/frames.js"),
     include_str!("web/states.js"),
+    include_str!("web/seeds.js"),
     include_str!("web/reasons.js"),
     include_str!("web/findings.js"),
+    include_str!("web/spoken.js"),
     include_str!("web/live.js"),
     include_str!("web/app.js"),
 ];

@@ -28,6 +28,7 @@ mod shot;
 mod track;
 
 pub use checked::{CheckView, FindingView};
+pub(crate) use document::median_seed;
 pub use document::{Document, RuleView, SettingView};
 pub use ground::{Ground, MoverOutline, SolidOutline};
 pub use html::{Page, page};
@@ -36,5 +37,7 @@ pub use seed::{SeedData, SeedView, StateRow};
 pub use shot::{Shot, ShotMaker, StagePicture, shot_of};
 pub use track::{MOST_TRACK_STEPS, Moments, MoverTrack, ScanShape, Track};
 
+#[cfg(test)]
+mod colours;
 #[cfg(test)]
 mod tests;

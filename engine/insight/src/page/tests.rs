@@ -118,8 +118,7 @@ fn every_mover_is_where_it_was_when_the_steps_are_played_again() {
         )
     };
     let plan = plan_in(&format!("{WORLD}{}{}", mover("first", 0.2, 8.0), mover("second", 0.4, 10.0)));
-    let names: Vec<_> =
-        Ground::new(&plan.layout).movers.into_iter().map(|mover| (mover.name, mover.solids.len())).collect();
+    let names: Vec<_> = Ground::new(&plan).movers.into_iter().map(|mover| (mover.name, mover.solids.len())).collect();
     assert_eq!(names, [("first".to_owned(), 1), ("second".to_owned(), 1)]);
     let mut ledger = Ledger::new(&plan, 40);
     let learned = learn_into(&plan, 1, &AtomicBool::new(false), &|_| (), &mut ledger).unwrap();

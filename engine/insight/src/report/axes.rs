@@ -1,11 +1,13 @@
 //! Axes with a grid and ticks at round numbers, and the map from values to places.
 
-use super::canvas::{Align, Spot, Text, units};
-use super::sheet::{FRAME, GRID, LABEL_PX, QUIET, SMALL_PX, Sheet, TEXT, centred, words};
+use super::canvas::{Align, Spot, Text, Tint, units};
+use super::sheet::{FRAME, LABEL_PX, QUIET, SMALL_PX, Sheet, TEXT, centred, words};
 use crate::words::spaced;
 
 /// Pixels under a plot for its labels.
 pub(super) const BELOW_PX: f64 = 54.0;
+/// Seen on paper and on the floor of any world.
+const GRID_LINE: Tint = FRAME.thin(0.21);
 /// Length of a tick, and from the axis to the number beside it, pixels.
 const TICK_PX: f64 = 5.0;
 const NUMBER_PX: f64 = 10.0;
@@ -108,10 +110,10 @@ pub(super) fn axes(sheet: &mut Sheet, min: Spot, max: Spot, x: &Axis, y: &Axis) 
     let rows: Vec<(i32, String)> =
         y_ticks.iter().map(|tick| (plot.at(x.low, *tick).1, spaced(*tick, y_decimals))).collect();
     for (column, _) in &columns {
-        sheet.line(vec![(*column, min.1), (*column, max.1)], 1.0, GRID);
+        sheet.line(vec![(*column, min.1), (*column, max.1)], 1.0, GRID_LINE);
     }
     for (row, _) in &rows {
-        sheet.line(vec![(min.0, *row), (max.0, *row)], 1.0, GRID);
+        sheet.line(vec![(min.0, *row), (max.0, *row)], 1.0, GRID_LINE);
     }
     for (column, number) in columns {
         sheet.line(vec![(column, max.1), (column, max.1 + units(TICK_PX))], 1.0, FRAME);
@@ -153,13 +155,14 @@ mod tests {
         let mut sheet = Sheet::new(300.0, 300.0, "");
         let axis = |title: &str| Axis { title: title.to_owned(), low: 0.0, high: 10.0, room_px: 40.0, ticks: 2 };
         axes(&mut sheet, (400, 400), (1000, 1000), &axis("x"), &axis("y"));
-        let picture = sheet.finish().unwrap();
+        let picture = sheet.finish("").unwrap();
         let image = image::load_from_memory(&picture.png).unwrap().to_rgb8();
         for at in [100, 175] {
             assert_eq!(image.get_pixel(at, 252).0, FRAME.rgb, "tick below at {at}");
             assert_eq!(image.get_pixel(98, at).0, FRAME.rgb, "tick beside at {at}");
         }
-        assert_eq!((image.get_pixel(175, 120).0, image.get_pixel(120, 175).0), (GRID.rgb, GRID.rgb));
+        let grid = [231, 233, 235];
+        assert_eq!((image.get_pixel(175, 120).0, image.get_pixel(120, 175).0), (grid, grid));
         assert_eq!((image.get_pixel(100, 120).0, image.get_pixel(120, 250).0), (FRAME.rgb, FRAME.rgb));
         assert_eq!(picture.svg.matches(">5<").count(), 2);
     }

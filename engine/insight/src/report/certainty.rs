@@ -1,7 +1,7 @@
 //! A certainty grid, the map of what the robot's sensors found, with the robot's path over it.
 
 use super::axes::BELOW_PX;
-use super::canvas::units;
+use super::canvas::{Tint, units};
 use super::picture::{Picture, failed};
 use super::route;
 use super::sheet::{BELOW_TITLE_PX, FRAME, MARGIN_PX, Sheet, spot};
@@ -10,6 +10,8 @@ use engine::diagnostic::Result;
 use engine::experiment::Trail;
 
 const WIDTH_PX: f64 = 1200.0;
+/// Where the grid does not reach.
+const FLOOR: Tint = Tint::hex(0xf6f7f8);
 
 /// Draws grey cells of `cell_m` metres, row 0 at the least y, from `origin` (metres, the least x and y) on.
 ///
@@ -36,11 +38,14 @@ pub fn certainty_grid(
     let mut sheet = Sheet::new(WIDTH_PX, BELOW_TITLE_PX + height_px + BELOW_PX + MARGIN_PX / 2.0, title);
     let min = spot(MARGIN_PX + LEFT_PX + (room_px - width_px) / 2.0, BELOW_TITLE_PX);
     let max = (min.0 + units(width_px), min.1 + units(height_px));
-    let plot = floor.plot(&mut sheet, min, max);
+    let plot = floor.plot(&mut sheet, min, max, FLOOR);
     let rgb = cells.chunks(width).rev().flatten().flat_map(|grey| [*grey; 3]).collect();
     let (min, max) = (plot.at(x_m, end[1]), plot.at(end[0], y_m));
     sheet.image(min, max, width, height, rgb);
     sheet.border(min, max, FRAME);
     route::draw_path(&mut sheet, &plot, path);
-    sheet.finish()
+    sheet.finish(&format!(
+        "What the laser found, light free, dark occupied, grey unknown; path of the robot over {} steps",
+        path.steps()
+    ))
 }

@@ -54,7 +54,14 @@ pub fn learning_curve(data: &CurveData<'_>) -> Result<Picture> {
     if let Some(step) = data.learned_at {
         mark_learned(&mut sheet, &plot, step, data.curves.len() > 1);
     }
-    sheet.finish()
+    sheet.finish(&shows(data))
+}
+
+fn shows(data: &CurveData<'_>) -> String {
+    let windows = data.curves.iter().map(Vec::len).max().unwrap_or(0);
+    let (runs, steps) = (data.curves.len(), data.window_steps);
+    let learned = data.learned_at.map_or(String::new(), |step| format!(", learned at step {step}"));
+    format!("Reinforcement per {steps} steps over {windows} windows, runs: {runs}{learned}")
 }
 
 pub(super) fn frame(sheet: &mut Sheet, data: &CurveData<'_>) -> Plot {

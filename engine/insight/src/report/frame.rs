@@ -135,7 +135,8 @@ pub fn frame(data: &FrameData<'_>) -> Result<Picture> {
     let (min, max) = panel(panels);
     title(&mut sheet, min, max, &format!("grid {} × {}: state {}", data.rows, data.columns, data.state), &digits(data));
     grid(&mut sheet, min, max, data);
-    sheet.finish()
+    let names: Vec<&str> = data.panels.iter().map(|panel| panel.name).collect();
+    sheet.finish(&format!("What the robot sees: {}, and the grid in state {}", names.join(", "), data.state))
 }
 
 fn check_parts(data: &FrameData<'_>) -> Result<()> {

@@ -36,7 +36,8 @@ pub fn growth(title: &str, groups: &[GrowthGroup<'_>]) -> Result<Picture> {
         group_of_bars(&mut sheet, group, left_px, place_px);
         left_px += group.bars.len() as f64 * place_px + GAP_PX;
     }
-    sheet.finish()
+    let names: Vec<&str> = groups.iter().map(|group| group.what).collect();
+    sheet.finish(&format!("Microseconds of a step, as bars: {}", names.join(", ")))
 }
 
 fn group_of_bars(sheet: &mut Sheet, group: &GrowthGroup<'_>, left_px: f64, place_px: f64) {

@@ -1,61 +1,169 @@
-//! The world from above: what stands, what is driven on, what is painted on the floor.
+//! The world from above: what stands, what is driven on, what is painted on the floor, what drives by itself.
 
 use super::axes::Plot;
 use super::canvas::{Spot, Tint};
-use super::sheet::{FRAME, Sheet};
-use engine::geometry::Point2;
+use super::sheet::{FRAME, PAPER, Sheet, TEXT};
+use engine::experiment::Plan;
+use engine::geometry::{Point2, Pose};
 use engine::world::scene::{SceneParts, Shape, Solid};
+use engine::world::{Mover, Route};
 
-/// The floor, dull enough to show white paint.
-pub(super) const FLOOR: Tint = Tint::hex(0xf6f7f8);
-/// What stops the robot.
-pub(super) const WALL: Tint = Tint::hex(0x484f58);
-/// What it drives on.
-const PLATFORM: Tint = Tint::hex(0xffffff);
-const ROUTE: Tint = Tint::hex(0x8c959f);
+/// The outline of what stands.
+pub(super) const EDGE: Tint = Tint::hex(0x484f58);
+const LAP: Tint = Tint::hex(0x8c959f);
+const WAY: Tint = Tint::hex(0x57606a);
+/// How far the colour of what is driven on goes towards white, so that a path can be read on it.
+const LIGHTER: f64 = 0.75;
 
-/// No robot stands on something thinner, metres: a path that cuts a wall does not make it a platform.
-const LEAST_PLATFORM_M: f64 = 0.3;
+/// A world as pictures show it.
+#[derive(Debug, Clone)]
+pub struct WorldPlan<'a> {
+    /// What stands still.
+    pub parts: &'a SceneParts,
+    /// For each solid, whether the robot drives on it.
+    pub driven_on: Vec<bool>,
+    /// The lap that the world's author had in mind.
+    pub lap: Option<&'a Route>,
+    /// All routes of the world.
+    pub routes: &'a [Route],
+    /// What drives by itself.
+    pub movers: &'a [Mover],
+    /// What a step is on the clock of the movers, seconds.
+    pub step_s: f64,
+}
 
-/// Draws the solids, the lowest first; one that holds any of `visited` is driven on and drawn light.
-pub(super) fn solids(sheet: &mut Sheet, plot: &Plot, parts: &SceneParts, visited: &[[f64; 2]]) {
-    let mut order: Vec<&Solid> = parts.solids.iter().collect();
-    order.sort_by(|a, b| (a.collides, top(a)).partial_cmp(&(b.collides, top(b))).unwrap_or(std::cmp::Ordering::Equal));
-    for solid in order {
-        let outline = outline(solid, plot);
-        let ramp = matches!(solid.shape, Shape::Ramp { .. });
-        if !solid.collides {
-            let paint =
-                parts.materials.get(solid.material).map_or(FRAME, |material| Tint { rgb: material.colour, alpha: 1.0 });
-            sheet.area(outline, paint);
-        } else if ramp || visited.iter().any(|at| holds(solid, *at)) {
-            sheet.area(outline.clone(), PLATFORM);
-            sheet.line(closed(outline), 1.5, WALL);
-        } else {
-            sheet.area(outline.clone(), WALL);
-            // A wall thinner than a pixel still has to be seen.
-            sheet.line(closed(outline), 1.0, WALL);
+impl<'a> WorldPlan<'a> {
+    /// The world of a plan, for its robot.
+    #[must_use]
+    pub fn of(plan: &'a Plan) -> Self {
+        let layout = &plan.layout;
+        Self {
+            driven_on: layout.driven_on(&plan.settings.robot.body),
+            lap: layout.lap.map(|lap| &layout.routes[lap]),
+            routes: &layout.routes,
+            movers: &layout.movers,
+            step_s: plan.settings.run.period_s * plan.settings.movers.speed,
+            ..Self::standing(layout.scene.parts())
+        }
+    }
+
+    /// Solids alone, none of them driven on.
+    #[must_use]
+    pub fn standing(parts: &'a SceneParts) -> Self {
+        Self { parts, driven_on: vec![false; parts.solids.len()], lap: None, routes: &[], movers: &[], step_s: 0.0 }
+    }
+
+    /// The ways of the movers that are not the lap.
+    pub(crate) fn ways(&self) -> impl Iterator<Item = &'a Route> {
+        self.movers.iter().filter_map(|mover| self.way(mover))
+    }
+
+    /// The way of a mover, unless that is the lap.
+    pub(crate) fn way(&self, mover: &'a Mover) -> Option<&'a Route> {
+        mover.way(self.routes).filter(|way| self.lap.is_none_or(|lap| !std::ptr::eq(lap, *way)))
+    }
+
+    /// Whether a mover drives along the lap.
+    pub(super) fn lap_is_driven(&self) -> bool {
+        self.movers.len() > self.ways().count()
+    }
+
+    /// The floor's colour.
+    pub(super) fn floor(&self) -> Tint {
+        lighter(self.colour(self.parts.floor))
+    }
+
+    fn colour(&self, material: usize) -> Tint {
+        self.parts.materials.get(material).map_or(FRAME, |material| Tint { rgb: material.colour, alpha: 1.0 })
+    }
+
+    /// Draws what stands, the lowest first, then the lap and the ways.
+    pub(super) fn draw(&self, sheet: &mut Sheet, plot: &Plot) {
+        let parts = self.parts;
+        let mut order: Vec<(&Solid, bool)> = parts.solids.iter().zip(self.driven_on.iter().copied()).collect();
+        let key = |solid: &Solid| (solid.collides, solid.bounds().1.z);
+        order.sort_by(|(a, _), (b, _)| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal));
+        for (solid, driven_on) in order {
+            let (outline, colour) = (outline(solid, plot), self.colour(solid.material));
+            let glass = parts.materials.get(solid.material).is_some_and(|material| !material.laser);
+            let ink = match solid {
+                _ if driven_on => lighter(colour),
+                // The laser passes, and so does the eye.
+                _ if solid.collides && glass => colour.thin(0.35),
+                _ => colour,
+            };
+            sheet.area(outline.clone(), ink);
+            if solid.collides {
+                // A wall thinner than a pixel still has to be seen.
+                sheet.line(closed(outline), 1.0, if driven_on { FRAME } else { EDGE });
+            }
+        }
+        for way in self.ways() {
+            dashed(sheet, &spots(plot, way), 1.0, WAY, FINE);
+        }
+        if let Some(lap) = self.lap {
+            dashed(sheet, &spots(plot, lap), 1.5, LAP, DASHES);
+        }
+    }
+
+    /// Draws the movers where they are after so many steps.
+    pub(super) fn draw_movers(&self, sheet: &mut Sheet, plot: &Plot, steps: usize) {
+        for mover in self.movers {
+            let at = mover.pose_at(self.routes, steps as f64 * self.step_s);
+            for solid in &mover.solids {
+                let outline = outline(&placed(solid, at), plot);
+                sheet.area(outline.clone(), self.colour(solid.material));
+                sheet.line(closed(outline), 1.0, TEXT);
+            }
         }
     }
 }
 
-/// Draws the lap that the world's author had in mind.
-pub(super) fn route(sheet: &mut Sheet, plot: &Plot, route: &[Point2]) {
-    let spots: Vec<Spot> =
-        route.iter().filter(|at| at.x.is_finite() && at.y.is_finite()).map(|at| plot.at(at.x, at.y)).collect();
-    dashed(sheet, &spots, 1.5, ROUTE);
+fn lighter(colour: Tint) -> Tint {
+    colour.towards(PAPER, LIGHTER)
 }
 
-/// The sign of the route in a legend.
-pub(super) fn route_sign(sheet: &mut Sheet, from: Spot, to: Spot) {
-    let y = (from.1 + to.1) / 2;
-    dashed(sheet, &[(from.0, y), (to.0, y)], 1.5, ROUTE);
+/// A mover's solid in the world.
+fn placed(solid: &Solid, at: Pose) -> Solid {
+    let (sin, cos) = libm::sincos(at.yaw_rad);
+    let mut placed = solid.clone();
+    placed.centre.x = at.x_m + cos * solid.centre.x - sin * solid.centre.y;
+    placed.centre.y = at.y_m + sin * solid.centre.x + cos * solid.centre.y;
+    placed.yaw_rad += at.yaw_rad;
+    placed
 }
+
+fn spots(plot: &Plot, route: &Route) -> Vec<Spot> {
+    let finite = |at: &Point2| at.x.is_finite() && at.y.is_finite();
+    route.drawn().filter(finite).map(|at| plot.at(at.x, at.y)).collect()
+}
+
+/// The sign of the lap in a legend.
+pub(super) fn lap_sign(sheet: &mut Sheet, from: Spot, to: Spot) {
+    let y = (from.1 + to.1) / 2;
+    dashed(sheet, &[(from.0, y), (to.0, y)], 1.5, LAP, DASHES);
+}
+
+/// The sign of a mover's way in a legend.
+pub(super) fn way_sign(sheet: &mut Sheet, from: Spot, to: Spot) {
+    let y = (from.1 + to.1) / 2;
+    dashed(sheet, &[(from.0, y), (to.0, y)], 1.0, WAY, FINE);
+}
+
+/// The sign of a mover in a legend.
+pub(super) fn mover_sign(sheet: &mut Sheet, from: Spot, to: Spot) {
+    let (middle, half) = ((from.0 + to.0) / 2, (to.1 - from.1) / 2);
+    let (min, max) = ((middle - half, from.1), (middle + half, to.1));
+    sheet.rect(min, max, LAP);
+    sheet.border(min, max, TEXT);
+}
+
+/// Dash and gap of the lap, and of a way, units.
+const DASHES: [f64; 2] = [32.0, 24.0];
+const FINE: [f64; 2] = [12.0, 12.0];
 
 /// A line of dashes that run on around the corners.
-fn dashed(sheet: &mut Sheet, spots: &[Spot], width_px: f64, ink: Tint) {
-    const DASH: f64 = 32.0;
-    const GAP: f64 = 24.0;
+fn dashed(sheet: &mut Sheet, spots: &[Spot], width_px: f64, ink: Tint, [dash_long, gap]: [f64; 2]) {
     let mut done = 0.0;
     let mut dash: Vec<Spot> = Vec::new();
     for pair in spots.windows(2) {
@@ -64,11 +172,12 @@ fn dashed(sheet: &mut Sheet, spots: &[Spot], width_px: f64, ink: Tint) {
         let length = (dx * dx + dy * dy).sqrt();
         let mut at = 0.0;
         while at < length {
-            let phase = done % (DASH + GAP);
-            let step = if phase < DASH { DASH - phase } else { DASH + GAP - phase }.min(length - at).max(1e-3);
+            let phase = done % (dash_long + gap);
+            let step =
+                if phase < dash_long { dash_long - phase } else { dash_long + gap - phase }.min(length - at).max(1e-3);
             let spot =
                 |at: f64| (from.0 + (dx * at / length).round() as i32, from.1 + (dy * at / length).round() as i32);
-            if phase < DASH {
+            if phase < dash_long {
                 if dash.is_empty() {
                     dash.push(spot(at));
                 }
@@ -81,10 +190,6 @@ fn dashed(sheet: &mut Sheet, spots: &[Spot], width_px: f64, ink: Tint) {
         }
     }
     sheet.line(dash, width_px, ink);
-}
-
-fn top(solid: &Solid) -> f64 {
-    solid.bounds().1.z
 }
 
 /// The corners of a solid seen from above, on the sheet.
@@ -109,38 +214,4 @@ fn outline(solid: &Solid, plot: &Plot) -> Vec<Spot> {
 fn closed(mut outline: Vec<Spot>) -> Vec<Spot> {
     outline.extend(outline.first().copied());
     outline
-}
-
-/// Whether a robot at a place of the floor plan can stand on the solid.
-pub(crate) fn holds(solid: &Solid, at: [f64; 2]) -> bool {
-    let (x, y) = (at[0] - solid.centre.x, at[1] - solid.centre.y);
-    let half = solid.shape.half_extents();
-    if 2.0 * half.x.min(half.y) < LEAST_PLATFORM_M {
-        return false;
-    }
-    if let Shape::Cylinder { radius_m, .. } = solid.shape {
-        return x * x + y * y < radius_m * radius_m;
-    }
-    let (sin, cos) = libm::sincos(solid.yaw_rad);
-    (cos * x + sin * y).abs() < half.x && (cos * y - sin * x).abs() < half.y
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use engine::geometry::{Point3, Vector3};
-
-    #[test]
-    fn a_turned_box_holds_what_lies_along_it_unless_it_is_thin() {
-        let solid = |half_y| Solid {
-            shape: Shape::Box { half_m: Vector3::new(2.0, half_y, 0.5) },
-            centre: Point3::new(1.0, 1.0, 0.5),
-            yaw_rad: std::f64::consts::FRAC_PI_2,
-            material: 0,
-            collides: true,
-        };
-        assert!(holds(&solid(0.2), [1.0, 2.5]));
-        assert!(!holds(&solid(0.2), [2.5, 1.0]));
-        assert!(!holds(&solid(0.1), [1.0, 2.5]));
-    }
 }

@@ -16,6 +16,8 @@ const WIDTH_PX: f64 = 1200.0;
 /// States on a page, and in a row.
 const MOST: usize = 64;
 const ACROSS: usize = 8;
+/// Fewer visits than these leave a state unsure.
+const FEW_VISITS: u64 = 10;
 const STEP_X_PX: f64 = (WIDTH_PX - 2.0 * MARGIN_PX) / ACROSS as f64;
 const STEP_Y_PX: f64 = 106.0;
 pub(super) const ICON_PX: f64 = 63.0;
@@ -60,7 +62,7 @@ pub fn policy(data: &PolicyData<'_>) -> Result<Picture> {
     shown.truncate(MOST);
     shown.sort_by_key(|state| state.state);
     let lines = shown.len().div_ceil(ACROSS).max(1);
-    let top_px = BELOW_TITLE_PX + 40.0;
+    let top_px = BELOW_TITLE_PX + 64.0;
     let mut sheet = Sheet::new(WIDTH_PX, top_px + lines as f64 * STEP_Y_PX + MARGIN_PX / 2.0, data.title);
     let most = shown.iter().map(|state| state.visits).max().unwrap_or(0);
     let fastest = shown.iter().map(|state| state.best.linear_m_per_s.abs()).fold(1e-9, f64::max);
@@ -73,7 +75,8 @@ pub fn policy(data: &PolicyData<'_>) -> Result<Picture> {
         motion(&mut sheet, spot(x_px + ICON_PX + 36.0, y_px + foot_px), state, fastest);
     }
     explain(&mut sheet);
-    sheet.finish()
+    let unsure = shown.iter().filter(|state| state.visits < FEW_VISITS).count();
+    sheet.finish(&format!("Best action of {} states, of which {unsure} were met too seldom to be sure", shown.len()))
 }
 
 /// How strongly a state is drawn, 0 to 1: by the order of magnitude of its visits.
@@ -99,6 +102,9 @@ pub(super) fn icon(sheet: &mut Sheet, min: Spot, (rows, columns): (usize, usize)
             sheet.line(vec![(min.0, y(row)), (max.0, y(row))], 1.0, line);
         }
     }
+    if state.visits < FEW_VISITS {
+        hatch(sheet, min, max, units(9.0));
+    }
     sheet.border(min, max, if state.visits == 0 { FRAME.towards(PAPER, 0.5) } else { FRAME });
     let name = if state.visits == 0 { QUIET } else { TEXT };
     let number = words(&state.state.to_string(), (min.0, max.1 + units(13.0)), SMALL_PX, name);
@@ -108,10 +114,26 @@ pub(super) fn icon(sheet: &mut Sheet, min: Spot, (rows, columns): (usize, usize)
     sheet.text(number);
 }
 
+/// Slanting lines over a rectangle: what is there is not sure.
+fn hatch(sheet: &mut Sheet, min: Spot, max: Spot, apart: i32) {
+    let (wide, high) = (max.0 - min.0, max.1 - min.1);
+    for from in (apart..wide + high).step_by(apart.max(1) as usize) {
+        let (low, end) = ((from - high).max(0), from.min(wide));
+        let line = vec![(min.0 + low, min.1 + from - low), (min.0 + end, min.1 + from - end)];
+        sheet.line(line, 1.0, PAPER);
+        sheet.line(
+            vec![(min.0 + low, min.1 + from - low + 4), (min.0 + end, min.1 + from - end + 4)],
+            1.0,
+            FRAME.thin(0.6),
+        );
+    }
+}
+
 /// The path that the robot would take in some time, upwards from `foot`: the length shows the speed, the bend the turn.
 pub(super) fn motion(sheet: &mut Sheet, foot: Spot, state: &PolicyState, fastest: f64) {
     let ink = match state {
         PolicyState { visits: 0, .. } => return,
+        PolicyState { visits, .. } if *visits < FEW_VISITS => FRAME,
         PolicyState { best, .. } if best.linear_m_per_s < 0.0 => VERMILION,
         _ => TEXT,
     };
@@ -172,5 +194,16 @@ fn explain(sheet: &mut Sheet) {
         LegendEntry { sign: &shades, words: "filled cells, stronger with more visits" },
     ];
     legend(sheet, end, &entries);
+    explain_unsure(sheet, (end.0, end.1 + units(24.0)));
     sheet.text(words("below each: state and value", spot(MARGIN_PX, BELOW_TITLE_PX + 6.0), SMALL_PX, QUIET));
+}
+
+/// The line of a legend that ends at `end` and says what hatching means.
+pub(super) fn explain_unsure(sheet: &mut Sheet, end: Spot) {
+    let unsure = |sheet: &mut Sheet, from: Spot, to: Spot| {
+        sheet.rect(from, to, PAPER.towards(BLUE, 0.4));
+        hatch(sheet, from, to, units(6.0));
+    };
+    let said = format!("hatched, pale arrow: met fewer than {FEW_VISITS} times, unsure");
+    legend(sheet, end, &[LegendEntry { sign: &unsure, words: &said }]);
 }

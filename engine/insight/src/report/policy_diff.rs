@@ -2,7 +2,7 @@
 
 use super::canvas::units;
 use super::picture::Picture;
-use super::policy::{ICON_PX, PolicyState, icon, motion, strength};
+use super::policy::{ICON_PX, PolicyState, explain_unsure, icon, motion, strength};
 use super::sheet::{BELOW_TITLE_PX, MARGIN_PX, QUIET, SMALL_PX, Sheet, TEXT, centred, spot, words};
 use engine::diagnostic::Result;
 
@@ -59,6 +59,7 @@ pub fn policy_diff(data: &PolicyDiffData<'_>) -> Result<Picture> {
         count => format!("{count} states change their best action, most visited first"),
     };
     let below = "below: state, old value and visits; how often the record tried each motion there. Orange is backwards";
+    explain_unsure(&mut sheet, spot(WIDTH_PX - MARGIN_PX, BELOW_TITLE_PX));
     sheet.text(words(&note, spot(MARGIN_PX, BELOW_TITLE_PX), SMALL_PX, QUIET));
     sheet.text(words(below, spot(MARGIN_PX, BELOW_TITLE_PX + 20.0), SMALL_PX, QUIET));
     for (index, change) in shown.iter().enumerate() {
@@ -85,7 +86,7 @@ pub fn policy_diff(data: &PolicyDiffData<'_>) -> Result<Picture> {
             QUIET.towards(super::sheet::PAPER, 0.6),
         );
     }
-    sheet.finish()
+    sheet.finish(&note)
 }
 
 #[cfg(test)]
@@ -111,7 +112,9 @@ mod tests {
     #[test]
     fn each_changed_state_says_how_much_the_record_knows_of_it() {
         let svg = drawn(&[change(1), change(23)]);
-        for words in ["2 states change their best action", "30 visits", "tried 5", "tried 2", "before", "after"] {
+        for words in
+            ["2 states change their best action", "30 visits", "tried 5", "tried 2", "before", "after", "unsure"]
+        {
             assert!(svg.contains(words), "{words}");
         }
     }

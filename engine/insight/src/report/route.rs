@@ -48,6 +48,16 @@ pub(super) fn draw_path(sheet: &mut Sheet, plot: &Plot, path: &Trail) {
     }
 }
 
+/// Draws the legs in one colour, and small crosses where it failed.
+pub(super) fn draw_thin(sheet: &mut Sheet, plot: &Plot, path: &Trail, ink: Tint) {
+    for leg in &path.legs {
+        sheet.line(leg.iter().map(|at| place(plot, *at)).collect(), 1.0, ink);
+    }
+    for failure in &path.failures {
+        sheet.cross(place(plot, *failure), 3.0, VERMILION.thin(0.7));
+    }
+}
+
 fn place(plot: &Plot, at: [f32; 2]) -> Spot {
     plot.at(f64::from(at[0]), f64::from(at[1]))
 }

@@ -50,9 +50,9 @@ impl Sheet {
         sheet
     }
 
-    /// The finished picture.
-    pub(super) fn finish(self) -> Result<Picture> {
-        Ok(Picture { svg: vector::svg(&self.canvas, &self.title)?, png: raster::png(&self.canvas)? })
+    /// The finished picture, with what it shows in words.
+    pub(super) fn finish(self, shows: &str) -> Result<Picture> {
+        Ok(Picture { svg: vector::svg(&self.canvas, &self.title, shows)?, png: raster::png(&self.canvas)? })
     }
 
     fn push(&mut self, mark: PictureMark) {

@@ -4,16 +4,22 @@ use filter_api::Format;
 use image::GenericImageView;
 
 use super::*;
+use engine::diagnostic::SourceText;
 use engine::experiment::Trail;
 use engine::geometry::{Point3, Twist, Vector3};
 use engine::random::Random;
 use engine::sensors::observation::Image;
+use engine::settings::BodyShape;
+use engine::world::Layout;
 use engine::world::scene::{Light, Material, SceneParts, Shape, Solid, Texture};
 
 fn solid(shape: Shape, x: f64, y: f64, yaw_rad: f64) -> Solid {
     let z = shape.half_extents().z;
     Solid { shape, centre: Point3::new(x, y, z), yaw_rad, material: 0, collides: true }
 }
+
+/// What the robot of these tests drives on.
+const SLAB: Shape = Shape::Box { half_m: Vector3::new(3.0, 3.0, 0.2) };
 
 fn wall(from: [f64; 2], to: [f64; 2]) -> Solid {
     let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
@@ -38,8 +44,11 @@ fn circle(points: usize) -> Vec<[f32; 2]> {
 }
 
 fn both(parts: &SceneParts, path: &Trail) -> Picture {
-    let data = TrajectoryData { title: "lap", parts, route: None, panels: &[("early", path), ("late", path)] };
-    trajectories(&data).unwrap()
+    let world = WorldPlan {
+        driven_on: parts.solids.iter().map(|solid| solid.shape == SLAB).collect(),
+        ..WorldPlan::standing(parts)
+    };
+    trajectories(&TrajectoryData { title: "lap", world: &world, panels: &[("early", path), ("late", path)] }).unwrap()
 }
 
 fn rising(runs: usize) -> Vec<Vec<f64>> {
@@ -68,6 +77,8 @@ fn assert_well_formed(svg: &str) {
         }
         assert_eq!(tag.matches('"').count() % 2, 0, "{tag}");
     }
+    let shows = svg.split_once("<desc>").and_then(|(_, rest)| rest.split_once("</desc>"));
+    assert!(shows.is_some_and(|(words, _)| words.len() > 20), "it does not say what it shows");
     assert!(open.is_empty() && svg.starts_with("<svg ") && svg.ends_with("</svg>\n"));
     assert!(!svg.contains("NaN") && !svg.contains("\"inf") && !svg.contains(",inf"));
 }
@@ -120,7 +131,7 @@ fn the_same_input_gives_the_same_bytes() {
 }
 
 #[test]
-fn a_wall_is_dark_where_it_stands_and_the_floor_is_not() {
+fn a_wall_has_its_colour_where_it_stands_and_the_floor_is_light() {
     let picture = both(&square(), &Trail::default());
     let image = pixels(&picture);
     // The plot ends 28 px before the right border and is (1400 - 56 - 24) / 2 - 66 = 594 px wide and high; the world with
@@ -130,27 +141,48 @@ fn a_wall_is_dark_where_it_stands_and_the_floor_is_not() {
         let pixel = image.get_pixel((1372.0 - 594.0 + place(x_m)) as u32, (98.0 + 594.0 - place(y_m)) as u32);
         [pixel[0], pixel[1], pixel[2]]
     };
+    let floor = plan::WorldPlan::standing(&square()).floor().rgb;
     for (x_m, y_m) in [(0.0, 2.0), (4.0, 1.0), (3.0, 4.0), (1.0, 0.0)] {
-        assert_eq!(at(x_m, y_m), plan::WALL.rgb, "{x_m} {y_m}");
+        assert_eq!(at(x_m, y_m), [200, 40, 30], "{x_m} {y_m}");
     }
-    assert_eq!(at(0.13, 2.1), plan::FLOOR.rgb);
-    assert_eq!(at(3.4, 3.4), plan::FLOOR.rgb);
+    assert_eq!(at(0.13, 2.1), floor);
+    assert_eq!(at(3.4, 3.4), floor);
     for words in [">x (m)<", ">y (m)<", ">early<", ">late<", ">failure<"] {
         assert!(picture.svg.contains(words), "{words}");
     }
 }
 
 #[test]
-fn what_the_robot_drives_on_is_light_and_paint_keeps_its_colour() {
+fn what_the_robot_drives_on_is_light_and_all_else_has_its_own_colour() {
     let mut stripe = solid(Shape::Box { half_m: Vector3::new(0.2, 3.0, 0.001) }, 5.0, 0.0, 0.0);
     stripe.collides = false;
-    let platform = solid(Shape::Box { half_m: Vector3::new(3.0, 3.0, 0.2) }, 0.0, 0.0, 0.3);
-    let parts = world(vec![stripe, platform]);
-    let dark = "fill=\"#484f58\"";
-    assert!(both(&parts, &Trail::default()).svg.contains(dark));
-    let drawn = both(&parts, &Trail { legs: vec![circle(40)], failures: vec![] });
-    assert!(!drawn.svg.contains(dark));
-    assert!(drawn.svg.contains("fill=\"#c8281e\""));
+    let platform = solid(SLAB, 0.0, 0.0, 0.3);
+    let (own, light) = ("fill=\"#c8281e\"", "fill=\"#f1c9c7\"");
+    let drawn = both(&world(vec![stripe, platform]), &Trail::default()).svg;
+    assert_eq!((drawn.matches(own).count(), drawn.matches(light).count()), (2, 4), "{drawn}");
+}
+
+#[test]
+fn a_mover_stands_where_it_is_at_the_end_of_the_shown_time_and_its_way_is_drawn() {
+    let text = "[[material]]\nname = \"green\"\ncolour = [1, 200, 3]\n[[start]]\nposition_m = [0, 0]\n\
+        [[route]]\nname = \"patrol\"\npoints_m = [[-4, 2], [4, 2]]\n\
+        [[mover]]\nname = \"guard\"\nroute = \"patrol\"\nspeed_m_per_s = 0.1\noffset_m = 0\n\
+        boxes = [{ centre_m = [0, 0, 0.2], size_m = [0.4, 0.4, 0.4], material = \"green\" }]\n";
+    let layout = Layout::parse(SourceText::new("guard.toml", text), &BodyShape::pioneer2at()).unwrap();
+    let (routes, movers) = (layout.routes.as_slice(), layout.movers.as_slice());
+    let world = WorldPlan { routes, movers, step_s: 0.5, ..WorldPlan::standing(layout.scene.parts()) };
+    let trail = |steps: usize| Trail { legs: vec![vec![[0.0, 0.0]; steps + 1]], failures: vec![] };
+    let panels: [(&str, &Trail); 2] = [("early", &trail(20)), ("late", &trail(80))];
+    let svg = trajectories(&TrajectoryData { title: "guard", world: &world, panels: &panels }).unwrap().svg;
+    let corners: Vec<f64> = (svg.lines().filter(|line| line.contains("fill=\"#01c803\"")))
+        .map(|line| line.split(['"', ',']).nth(1).unwrap().parse().unwrap())
+        .collect();
+    let [early, late] = corners[..] else { panic!("{svg}") };
+    // In the second panel it is 3 m farther on; a panel begins 684 px after the other, and is 594 px and 8.48 m wide.
+    assert!((late - early - 684.0 - 3.0 * 594.0 / 8.48).abs() < 1.0, "{early} {late}");
+    for words in ["mover at the end", "way of a mover", "path of the robot over 80 steps", "mover: guard"] {
+        assert!(svg.contains(words), "{words}");
+    }
 }
 
 #[test]
@@ -252,6 +284,32 @@ fn a_policy_shows_the_most_visited_states_in_order() {
     for states in [vec![], vec![state(5, 0, (0.0, 0.0))]] {
         assert_well_formed(&policy(&PolicyData { title: "", rows: 2, columns: 2, states: &states }).unwrap().svg);
     }
+}
+
+#[test]
+fn a_state_that_was_hardly_met_looks_unsure() {
+    let drawn = |visits| {
+        let states = [state(1, visits, (0.2, 0.0)), state(2, 50, (0.2, 0.0))];
+        policy(&PolicyData { title: "policy", rows: 2, columns: 2, states: &states }).unwrap().svg
+    };
+    let strokes = |svg: &str| svg.matches("stroke=\"#8c959f\" stroke-opacity").count();
+    assert!(strokes(&drawn(9)) > strokes(&drawn(10)) + 5);
+    assert!(drawn(10).contains("met fewer than 10 times, unsure"));
+}
+
+#[test]
+fn the_paths_of_many_seeds_have_one_that_is_strong() {
+    let trails: Vec<Trail> =
+        (0..3).map(|seed| Trail { legs: vec![circle(50)], failures: vec![[1.0, 1.0]; seed] }).collect();
+    let (parts, all) = (square(), trails.iter().collect::<Vec<_>>());
+    let data = PathsData { title: "all", world: &WorldPlan::standing(&parts), paths: &all, strong: (1, 7) };
+    let picture = paths(&data).unwrap();
+    assert_well_formed(&picture.svg);
+    assert!(picture.svg.contains("seed 7, with the median failures"));
+    assert!(picture.svg.contains("Paths of 3 seeds in their tests, failures: 3; seed 7 is drawn strong"));
+    // The other two have one line each.
+    assert_eq!(picture.svg.matches("stroke=\"#57606a\" stroke-opacity=\"0.55\"").count(), 2);
+    assert!(paths(&PathsData { paths: &[], ..data }).is_ok());
 }
 
 #[test]

@@ -1,16 +1,16 @@
 //! Where the robot drove: panels of the world from above, such as early and late.
 
 use super::axes::{Axis, BELOW_PX, Plot, axes, range};
-use super::canvas::{Spot, units};
+use super::canvas::{Spot, Tint, units};
 use super::picture::Picture;
+use super::plan::WorldPlan;
 use super::sheet::{
     BELOW_TITLE_PX, LABEL_PX, LegendEntry, MARGIN_PX, Sheet, TEXT, VERMILION, centred, fitted, legend, spot, words,
 };
 use super::{plan, route};
 use engine::diagnostic::Result;
 use engine::experiment::Trail;
-use engine::geometry::Point2;
-use engine::world::scene::SceneParts;
+use engine::world::Route;
 
 const WIDTH_PX: f64 = 1400.0;
 /// Room for four digits and the title beside them.
@@ -22,9 +22,7 @@ pub struct TrajectoryData<'a> {
     /// The heading.
     pub title: &'a str,
     /// The world.
-    pub parts: &'a SceneParts,
-    /// The lap that the world's author had in mind.
-    pub route: Option<&'a [Point2]>,
+    pub world: &'a WorldPlan<'a>,
     /// Name and path of each panel, left to right; one or two.
     pub panels: &'a [(&'a str, &'a Trail)],
 }
@@ -34,32 +32,34 @@ pub struct TrajectoryData<'a> {
 /// # Errors
 /// If the picture cannot be drawn or encoded.
 pub fn trajectories(data: &TrajectoryData<'_>) -> Result<Picture> {
-    let visited: Vec<[f64; 2]> = data.panels.iter().flat_map(|(_, path)| route::points(path)).collect();
-    let lap = data.route.unwrap_or_default();
-    let floor = FloorPlan::around(data.parts, visited.iter().copied().chain(lap.iter().map(|at| [at.x, at.y])));
+    let floor = FloorPlan::around(data.world, data.panels.iter().flat_map(|(_, path)| route::points(path)));
     let room_px = (WIDTH_PX - 2.0 * MARGIN_PX - 24.0) / 2.0 - LEFT_PX;
     let (width_px, height_px) = floor.fit(room_px, 760.0);
     let top_px = BELOW_TITLE_PX + 30.0;
     let mut sheet = Sheet::new(WIDTH_PX, top_px + height_px + BELOW_PX + 44.0, data.title);
-    // Walls are touched where failures are; only the path itself shows what can be driven on.
-    let driven: Vec<[f64; 2]> = data.panels.iter().flat_map(|(_, path)| driven(path)).collect();
     for (index, (name, path)) in data.panels.iter().enumerate() {
         let left_px = MARGIN_PX + LEFT_PX + index as f64 * (room_px + LEFT_PX + 24.0) + (room_px - width_px) / 2.0;
         let min = spot(left_px, top_px);
         let max = (min.0 + units(width_px), min.1 + units(height_px));
         let heading = centred(words(name, ((min.0 + max.0) / 2, min.1 - units(18.0)), LABEL_PX, TEXT));
         sheet.text(fitted(heading, units(room_px)));
-        let plot = floor.plot(&mut sheet, min, max);
-        plan::solids(&mut sheet, &plot, data.parts, &driven);
-        plan::route(&mut sheet, &plot, lap);
+        let plot = floor.plot(&mut sheet, min, max, data.world.floor());
+        data.world.draw(&mut sheet, &plot);
+        data.world.draw_movers(&mut sheet, &plot, path.steps());
         route::draw_path(&mut sheet, &plot, path);
     }
-    explain(&mut sheet, data.route.is_some());
-    sheet.finish()
+    explain(&mut sheet, data.world);
+    sheet.finish(&shows(data.world, data.panels))
 }
 
-fn driven(path: &Trail) -> impl Iterator<Item = [f64; 2]> {
-    path.legs.iter().flat_map(|leg| leg.iter().step_by(8)).map(|at| [f64::from(at[0]), f64::from(at[1])])
+/// Each panel in words, and what drives by itself.
+fn shows(world: &WorldPlan<'_>, panels: &[(&str, &Trail)]) -> String {
+    let panel = |(name, path): &(&str, &Trail)| {
+        let (steps, failures) = (path.steps(), path.failures.len());
+        format!("{name}: path of the robot over {steps} steps, failures: {failures}")
+    };
+    let movers = world.movers.iter().map(|mover| format!("mover: {}", mover.name));
+    panels.iter().map(panel).chain(movers).collect::<Vec<_>>().join("; ")
 }
 
 /// The part of the floor plan that is shown, metres.
@@ -70,13 +70,14 @@ pub(super) struct FloorPlan {
 }
 
 impl FloorPlan {
-    /// All solids and places, with a small border.
-    pub(super) fn around(parts: &SceneParts, places: impl Iterator<Item = [f64; 2]>) -> Self {
-        let corners = parts.solids.iter().flat_map(|solid| {
+    /// All solids, routes and places, with a small border.
+    pub(super) fn around(world: &WorldPlan<'_>, places: impl Iterator<Item = [f64; 2]>) -> Self {
+        let corners = world.parts.solids.iter().flat_map(|solid| {
             let (min, max) = solid.bounds();
             [[min.x, min.y], [max.x, max.y]]
         });
-        let all: Vec<[f64; 2]> = corners.chain(places).collect();
+        let routes = world.ways().chain(world.lap).flat_map(Route::drawn).map(|at| [at.x, at.y]);
+        let all: Vec<[f64; 2]> = corners.chain(routes).chain(places).collect();
         let (x, y) = (range(all.iter().map(|at| at[0])), range(all.iter().map(|at| at[1])));
         let border = 0.03 * (x.1 - x.0).max(y.1 - y.0);
         Self::showing((x.0 - border, x.1 + border), (y.0 - border, y.1 + border))
@@ -100,8 +101,8 @@ impl FloorPlan {
     }
 
     /// Draws the axes and the empty floor.
-    pub(super) fn plot(&self, sheet: &mut Sheet, min: Spot, max: Spot) -> Plot {
-        sheet.rect(min, max, plan::FLOOR);
+    pub(super) fn plot(&self, sheet: &mut Sheet, min: Spot, max: Spot, floor: Tint) -> Plot {
+        sheet.rect(min, max, floor);
         let per_tick = units(80.0);
         let x = Axis {
             title: "x (m)".to_owned(),
@@ -121,7 +122,7 @@ impl FloorPlan {
     }
 }
 
-fn explain(sheet: &mut Sheet, lap: bool) {
+fn explain(sheet: &mut Sheet, world: &WorldPlan<'_>) {
     let middle = |from: Spot, to: Spot| ((from.0 + to.0) / 2, (from.1 + to.1) / 2);
     let end = spot(WIDTH_PX - MARGIN_PX, sheet.height_px - 28.0);
     let time = |sheet: &mut Sheet, from: Spot, to: Spot| {
@@ -133,12 +134,20 @@ fn explain(sheet: &mut Sheet, lap: bool) {
     };
     let start = |sheet: &mut Sheet, from: Spot, to: Spot| sheet.disc(middle(from, to), 6.0, route::shade(1.0));
     let failure = |sheet: &mut Sheet, from: Spot, to: Spot| sheet.cross(middle(from, to), 5.0, VERMILION);
-    let intended = |sheet: &mut Sheet, from: Spot, to: Spot| plan::route_sign(sheet, from, to);
-    let all = [
+    let mut all = vec![
         LegendEntry { sign: &start, words: "start" },
         LegendEntry { sign: &time, words: "way, light early to dark late" },
         LegendEntry { sign: &failure, words: "failure" },
-        LegendEntry { sign: &intended, words: "intended lap" },
     ];
-    legend(sheet, end, if lap { &all } else { &all[..3] });
+    if world.lap.is_some() {
+        let words = if world.lap_is_driven() { "intended lap, driven by the mover too" } else { "intended lap" };
+        all.push(LegendEntry { sign: &plan::lap_sign, words });
+    }
+    if !world.movers.is_empty() {
+        all.push(LegendEntry { sign: &plan::mover_sign, words: "mover at the end" });
+    }
+    if world.ways().next().is_some() {
+        all.push(LegendEntry { sign: &plan::way_sign, words: "way of a mover" });
+    }
+    legend(sheet, end, &all);
 }

@@ -7,19 +7,20 @@ use super::{glyphs, raster};
 use crate::markup::{Escaped, base64};
 use engine::diagnostic::Result;
 
-/// The canvas as a whole SVG document.
+/// The canvas as a whole SVG document, with a title and what it shows in words.
 ///
 /// # Errors
 /// If an image in it cannot be encoded.
-pub(super) fn svg(canvas: &PictureCanvas, title: &str) -> Result<String> {
+pub(super) fn svg(canvas: &PictureCanvas, title: &str, shows: &str) -> Result<String> {
     let (width, height) = (canvas.width_px, canvas.height_px);
     let mut out = String::new();
     let _ = writeln!(
         out,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
-         font-family=\"{}\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n<title>{}</title>",
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" role=\"img\" \
+         font-family=\"{}\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n<title>{}</title>\n<desc>{}</desc>",
         glyphs::FAMILY,
-        Escaped(title)
+        Escaped(title),
+        Escaped(shows)
     );
     for mark in &canvas.marks {
         write_mark(&mut out, mark)?;
@@ -122,7 +123,8 @@ mod tests {
 
     #[test]
     fn a_title_cannot_break_the_document() {
-        let document = svg(&PictureCanvas::new(10, 10), "a </title>").unwrap();
-        assert!(document.contains("<title>a &lt;/title&gt;</title>"), "{document}");
+        let document = svg(&PictureCanvas::new(10, 10), "a </title>", "b </desc>").unwrap();
+        let head = "<title>a &lt;/title&gt;</title>\n<desc>b &lt;/desc&gt;</desc>";
+        assert!(document.contains(head), "{document}");
     }
 }

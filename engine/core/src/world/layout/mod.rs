@@ -60,6 +60,12 @@ impl Layout {
         self.terrain.level_height_m(body)
     }
 
+    /// For each solid, whether a body drives on it: a platform, a ramp, and what is within a step of them or of the floor.
+    #[must_use]
+    pub fn driven_on(&self, body: &BodyShape) -> Vec<bool> {
+        self.terrain.driven_on(&self.scene, body.step_m)
+    }
+
     /// Reads a world from its text. `body` is the one that must be able to stand at every start.
     ///
     /// # Errors

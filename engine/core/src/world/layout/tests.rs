@@ -263,3 +263,17 @@ fn the_manual_names_every_key() {
     let example = manual.split("```toml").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
     assert!(parse(example).is_ok(), "{:?}", parse(example).err());
 }
+
+#[test]
+fn platforms_ramps_and_what_is_a_step_from_them_are_driven_on_and_walls_are_not() {
+    let text = "[[start]]\nposition_m = [0, 0]\n\
+        [[platform]]\ncentre_m = [0, 0]\nsize_m = [4, 4, 0.5]\n\
+        [[box]]\ncentre_m = [1, 0]\nsize_m = [0.4, 2, 0.04]\nbottom_m = 0.5\n\
+        [[box]]\ncentre_m = [-1, 1]\nsize_m = [0.4, 0.4, 0.4]\nbottom_m = 0.5\n\
+        [[box]]\ncentre_m = [2.5, 0]\nsize_m = [1, 1, 0.5]\n\
+        [[box]]\ncentre_m = [9, 9]\nsize_m = [1, 1, 0.5]\n\
+        [[box]]\ncentre_m = [9, 0]\nsize_m = [1, 1, 0.05]\n";
+    let layout = parse(text).unwrap();
+    // The boxes come first.
+    assert_eq!(layout.driven_on(&PIONEER), [true, false, true, false, true, true]);
+}

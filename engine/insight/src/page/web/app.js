@@ -12,6 +12,7 @@ const curve = new Curve($('curve'), $('curve-note'), pickWindow);
 const timeline = new Timeline($('timeline'), (step) => { pause(); go(step); });
 const frames = new Frames($('frames'), $('frames-note'));
 const states = new States($('states'), $('states-note'), nextWithState);
+const seeds = new Seeds($('seeds'), $('seeds-note'), pickSeed);
 const script = new Script($('script'), light);
 
 const seedView = () => app.doc.seeds[app.seed];
@@ -40,6 +41,7 @@ function showDocument(doc, before) {
     value: index, text: seed.seed, disabled: !app.live && !seed.learning && !seed.tested,
   })));
   $('seed').value = app.seed;
+  seeds.draw(doc, app.live !== null);
   script.draw(doc);
   checkedNow();
   showSettings(doc);
@@ -60,6 +62,12 @@ function chooseSeed(index) {
   setPhase(app.phase);
   go(app.step);
   complete();
+}
+
+function pickSeed(index) {
+  app.picked = true;
+  $('seed').value = index;
+  chooseSeed(index);
 }
 
 /** Asks for the steps of a seed that the document left out. */
@@ -98,6 +106,7 @@ function setPhase(phase) {
       el('b', { text: `${short(test.mean_speed)} m/s` }), ...(test.laps === null ? [] : [', ', el('b', { text: `${short(test.laps)} laps` })])] : []),
   );
   app.shot = null;
+  seeds.now(app.seed);
   states.draw(app.doc, seed, app.before?.seeds.find((old) => old.seed === seed.seed) ?? null);
   Object.assign(stale, { base: true, moment: true, motion: true });
 }
@@ -199,17 +208,22 @@ function drawFrame(now) {
   const steps = track();
   if (stale.base) {
     map.drawBase(app.doc, steps, app.litRule);
-    $('map-note').textContent = steps ? `${app.phase}: the last ${TRAIL_STEPS} steps, and where rules fired; metres` : 'these steps are not in this file';
+    $('map-note').textContent = mapNote(app.doc, steps, app.phase);
     curve.drawBase(app.doc, seedView(), app.before);
     timeline.drawBase(app.doc, steps, app.litRule, app.phase === 'learning' ? app.doc.swaps : []);
     curve.stale = true;
   }
   const index = steps ? steps.index(app.step) : -1;
   if (index >= 0 && stale.moment) drawMoment(steps, index);
-  if (index >= 0 && (stale.moment || stale.lit)) script.light(app.litRule, (rule) => marked(app.doc, rule) && steps.fired(index, rule) === 1);
+  if (index >= 0 && (stale.moment || stale.lit)) script.light(app.litRule, (rule) => steps.fired(index, rule) === 1);
   if (stale.motion || stale.base) {
     map.drawOver(app.doc, steps, app.step, app.share);
     timeline.drawOver(app.step + app.share - 1);
+  }
+  // While it plays, once a second is enough for whoever listens.
+  if (stale.base || (stale.moment && (!app.playing || now - drawFrame.said > 1000))) {
+    say(app, seedView(), steps, index);
+    drawFrame.said = now;
   }
   if (curve.stale) curve.drawOver(app.phase === 'learning' ? Math.floor(app.step / app.doc.window_steps) : null);
   Object.assign(stale, { base: false, moment: false, motion: false, lit: false });
@@ -264,7 +278,7 @@ function start() {
   $('back').addEventListener('click', () => { pause(); go(app.step - 1); });
   $('forth').addEventListener('click', () => { pause(); go(app.step + 1); });
   $('speed').addEventListener('change', (event) => { setSpeed(Number(event.target.value)); event.target.blur(); });
-  $('seed').addEventListener('change', (event) => { app.picked = true; chooseSeed(Number(event.target.value)); event.target.blur(); });
+  $('seed').addEventListener('change', (event) => { pickSeed(Number(event.target.value)); event.target.blur(); });
   for (const button of $('phase').children) button.addEventListener('click', () => { setPhase(button.dataset.phase); go(0); });
   document.addEventListener('keydown', key);
   const again = () => { readInk(); if (app.doc) { script.draw(app.doc); script.note(app.doc.findings); stale.base = true; stale.moment = true; } };

@@ -89,6 +89,17 @@ class Track {
     return Math.max(0, best);
   }
 
+  /** In how many of the steps a rule fired. */
+  firings(rule) {
+    this.counts ??= [];
+    if (this.counts[rule] === undefined) {
+      let count = 0;
+      for (let index = 0; index < this.count; index += 1) count += this.fired(index, rule);
+      this.counts[rule] = count;
+    }
+    return this.counts[rule];
+  }
+
   fired(index, rule) {
     return (this.bits[index * this.words + (rule >> 3)] >> (rule & 7)) & 1;
   }

@@ -3,7 +3,7 @@
 const ink = {};
 function readInk() {
   const style = getComputedStyle(document.documentElement);
-  for (const name of ['text', 'quiet', 'line', 'soft', 'paper', 'accent', 'accent-soft', 'wall', 'floor', 'ground', 'route', 'trail',
+  for (const name of ['text', 'quiet', 'line', 'soft', 'paper', 'accent', 'accent-soft', 'wall', 'route', 'trail',
     'before', 'bad']) {
     ink[name] = style.getPropertyValue(`--${name}`).trim();
   }
@@ -18,6 +18,37 @@ function chooseRuleInks(rules) {
   ruleInks = rules.map((rule) => (rule.value > 0 ? good[goods++ % good.length] : bad[bads++ % bad.length]));
 }
 const ruleInk = (rule) => ink.rules[ruleInks[rule]];
+
+/** A shape for each rule beside its colour, from -1 to 1: square, disc, triangle, diamond, plus, triangle on its tip, ring. */
+const SHAPES = [
+  'M-.9-.9H.9V.9H-.9Z', 'M-1 0A1 1 0 1 0 1 0A1 1 0 1 0-1 0Z', 'M0-1.1L1.1.9H-1.1Z', 'M0-1.2L1.2 0L0 1.2L-1.2 0Z',
+  'M-.4-1.1H.4V-.4H1.1V.4H.4V1.1H-.4V.4H-1.1V-.4H-.4Z', 'M0 1.1L1.1-.9H-1.1Z',
+  'M-1.1 0A1.1 1.1 0 1 0 1.1 0A1.1 1.1 0 1 0-1.1 0ZM-.5 0A.5.5 0 1 1 .5 0A.5.5 0 1 1-.5 0Z',
+];
+const PATHS = SHAPES.map((shape) => new Path2D(shape));
+const shapeOf = (rule) => rule % SHAPES.length;
+
+/** The mark of a rule in the colour of the pen. */
+function ruleMark(pen, rule, x, y, size) {
+  pen.save();
+  pen.translate(x, y);
+  pen.scale(size, size);
+  pen.fill(PATHS[shapeOf(rule)]);
+  pen.restore();
+}
+
+/** The same among words. */
+function chip(rule) {
+  const path = svg('path', { d: SHAPES[shapeOf(rule)] });
+  path.style.fill = ruleInk(rule);
+  return svg('svg', { class: 'chip', viewBox: '-1.25 -1.25 2.5 2.5', 'aria-hidden': 'true' }, path);
+}
+
+/** The colour of what is driven on: three quarters of the way to the page's paper, so that a path can be read on it. */
+function floorInk(colour) {
+  const paper = ink.paper.match(/[0-9a-f]{2}/gi).map((part) => parseInt(part, 16));
+  return `rgb(${colour.map((part, at) => Math.round(part + 0.75 * (paper[at] - part))).join(' ')})`;
+}
 
 /** A canvas in pixels of the screen; false while it has no size. */
 function fit(canvas) {

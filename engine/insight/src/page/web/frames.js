@@ -30,6 +30,8 @@ class Frames {
       box.textContent = doc.grid[1] <= 3 ? `${(100 * share).toFixed(1)} %` : doc.grid[1] <= 6 ? (100 * share).toFixed(0) : '';
       box.className = shot.occupied[cell] ? 'occupied' : shot.filled[cell] ? 'filled' : '';
     });
+    const filled = shot.filled.filter(Boolean).length;
+    this.parts.grid.setAttribute('aria-label', `grid in state ${shot.state}: ${filled} of ${shot.filled.length} cells filled`);
     this.parts.state.textContent = `state ${shot.state}`;
   }
 
@@ -48,7 +50,7 @@ class Frames {
     const state = el('b');
     const captions = shot.stages.map((stage, index) =>
       index === 0 ? `camera, ${shot.size_px[0]} × ${shot.size_px[1]} px` : `filter ${stage.name}`);
-    this.parts = { names, images, cells, state };
+    this.parts = { names, images, cells, grid, state };
     this.box.replaceChildren(
       ...images.map((image, index) => el('figure', {}, image, el('figcaption', { text: captions[index] }))),
       el('figure', {}, grid, el('figcaption', {}, `grid ${rows} × ${columns}, `, state)),

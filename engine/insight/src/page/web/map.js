@@ -22,17 +22,16 @@ class WorldMap {
     const fromX = left + (width - left - right - spanX) / 2;
     const fromY = above + (height - above - below - spanY) / 2;
     this.view = { floor: [fromX - 1, fromY - 1, spanX + 2, spanY + 2], scale, x: (m) => fromX + (m - x0) * scale, y: (m) => fromY + (y1 - m) * scale };
-    pen.fillStyle = ink.floor;
+    pen.fillStyle = floorInk(doc.world.floor);
     pen.fillRect(fromX, fromY, spanX, spanY);
     pen.save();
     pen.beginPath();
     pen.rect(...this.view.floor);
     pen.clip();
     for (const solid of doc.world.solids) this.solid(pen, solid);
-    if (doc.world.route_m) {
-      const route = doc.world.route_m.map(([x, y]) => [this.view.x(x), this.view.y(y)]);
-      line(pen, route, ink.route, 1, [5, 4]);
-    }
+    const places = (way) => way.map(([x, y]) => [this.view.x(x), this.view.y(y)]);
+    for (const { way_m: way } of doc.world.movers) if (way) line(pen, places(way), ink.quiet, 1, [2, 3]);
+    if (doc.world.route_m) line(pen, places(doc.world.route_m), ink.route, 1, [5, 4]);
     if (track) this.marks(pen, doc, track, litRule);
     pen.restore();
     for (const at of ticks(x0, x1, spanX / 70)) if (this.view.x(at) < fromX + spanX - 8) label(pen, short(at), this.view.x(at), fromY + spanY + 14, 'center');
@@ -63,8 +62,8 @@ class WorldMap {
       return;
     }
     pen.lineWidth = 1;
-    pen.strokeStyle = ink.wall;
-    pen.fillStyle = solid.kind === 'ground' ? ink.ground : ink.wall;
+    pen.strokeStyle = solid.kind === 'ground' ? ink.route : ink.wall;
+    pen.fillStyle = solid.kind === 'ground' ? floorInk(solid.colour) : colour;
     if (solid.kind === 'glass') pen.globalAlpha = 0.35;
     pen.fill();
     pen.globalAlpha = 1;
@@ -72,21 +71,18 @@ class WorldMap {
   }
 
   marks(pen, doc, track, litRule) {
-    const shown = doc.rules.map((_, rule) => rule).filter((rule) => marked(doc, rule) && (litRule === null || litRule === rule));
+    const shown = doc.rules.map((_, rule) => rule).filter((rule) => (litRule === null ? !covers(track, rule) : litRule === rule));
     for (const rule of shown) {
-      let count = 0;
-      for (let index = 0; index < track.count; index += 1) count += track.fired(index, rule);
+      const count = track.firings(rule);
       // What fires at every turn is a shade; what fires seldom is an event.
       const crowd = count > MANY_MARKS;
-      const strength = litRule === rule ? 0.85 : 0.5;
+      const strength = litRule === rule ? 0.95 : 0.75;
       pen.fillStyle = ruleInk(rule);
       pen.globalAlpha = crowd ? Math.max(0.12, strength * Math.sqrt(MANY_MARKS / count)) : strength;
       for (let index = 0; index < track.count; index += 1) {
         if (!track.fired(index, rule)) continue;
         const [x, y] = [this.view.x(track.x[index] * doc.unit_m), this.view.y(track.y[index] * doc.unit_m)];
-        pen.beginPath();
-        pen.arc(x, y, crowd ? 2 : litRule === rule ? 4 : 2.5, 0, 2 * Math.PI);
-        pen.fill();
+        ruleMark(pen, rule, x, y, crowd ? 2 : litRule === rule ? 4.5 : 3.5);
       }
     }
     pen.globalAlpha = 1;
@@ -198,8 +194,15 @@ class WorldMap {
   }
 }
 
-/** `fn reward` speaks at nearly every step; it is no event to mark. */
-const marked = (doc, rule) => doc.rules[rule].value !== null;
+/** A rule that fires at most steps would cover the plan; it is drawn only when it is pointed at. */
+const covers = (track, rule) => track.firings(rule) > 0 && track.firings(rule) >= track.count / 2;
+
+/** What is drawn, in words. */
+function mapNote(doc, track, phase) {
+  if (!track) return 'these steps are not in this file';
+  const left = doc.rules.filter((_, rule) => covers(track, rule)).map((rule) => rule.name);
+  return `${phase}: the last ${TRAIL_STEPS} steps, and where rules fired${left.length ? `, but ${left.join(', ')}, which fired at most steps` : ''}; metres`;
+}
 
 /** The robot's pose a share of the way from the step before, where no recovery lies between. */
 function between(track, index, share, unit) {

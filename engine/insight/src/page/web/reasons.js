@@ -1,11 +1,5 @@
 // Why: the step in words, the causes of its window, the script with the lines that spoke, settings.
 
-function chip(rule) {
-  const made = el('span', { class: 'chip' });
-  made.style.background = ruleInk(rule);
-  return made;
-}
-
 /** The step as it was recorded. */
 function showStep(doc, track, index, step) {
   const flags = track.flags[index];
@@ -36,6 +30,18 @@ function factWords(fact, doc) {
   return `${fact.name} = ${value}${fact.beam === null ? '' : ` (${beamWords(fact.beam, doc.scan.beams)})`}`;
 }
 
+/** What a rule added in a step: its value, or what the others leave of the reward; null where two such rules fired. */
+function addedBy(doc, track, index, rule) {
+  if (doc.rules[rule].value !== null) return doc.rules[rule].value;
+  let left = track.reward[index];
+  for (const [at, { value }] of doc.rules.entries()) {
+    if (at === rule || !track.fired(index, at)) continue;
+    if (value === null) return null;
+    left -= value;
+  }
+  return left;
+}
+
 /** What each rule said: with its facts where the moment brought them, else only which fired. */
 function showReasons(doc, track, index, reasons) {
   // Before a swap of the reward, another script judged: its rules are known by their names.
@@ -45,7 +51,7 @@ function showReasons(doc, track, index, reasons) {
   const shown = rules.filter(({ fired, why }) => fired || why);
   $('reasons').replaceChildren(el('ul', {}, ...shown.map(({ rule, at, fired, why }) => {
     const held = why && why.needed > 1 ? `; held ${why.held} of ${why.needed} steps` : '';
-    const words = fired ? `${signed(why ? why.added : rule.value ?? track.reward[index])}${held}`
+    const words = fired ? `${signed(why ? why.added : addedBy(doc, track, index, at))}${held}`
       : why && !why.asked ? 'not asked: an earlier rule ended the step' : `silent${held}`;
     const facts = why ? why.parts.flatMap((part) => part.facts.map((fact) => factWords(fact, doc))) : [];
     return el('li', {}, chip(at), fired ? el('b', { text: rule.name }) : el('span', { class: 'quiet', text: rule.name }), ` ${words}`,
@@ -65,7 +71,8 @@ function showCauses(doc, seed, track, phase, window_, jump, light_) {
     for (const cause of causes) {
       if (!track.fired(index, cause.at)) continue;
       cause.count += 1;
-      cause.total += cause.rule.value ?? 0;
+      const added = addedBy(doc, track, index, cause.at);
+      cause.total = added === null || cause.total === null ? null : cause.total + added;
       cause.first ??= step;
       const beam = track.beam[index];
       if (beam !== NO_BEAM && cause.rule.value !== null) cause.beams.set(beam, (cause.beams.get(beam) ?? 0) + 1);
@@ -84,7 +91,7 @@ function showCauses(doc, seed, track, phase, window_, jump, light_) {
       .map(([beam, count]) => `${beamWords(beam, doc.scan.beams)}${count > 1 ? ` (${count} ×)` : ''}`).join('; ');
     return el('li', { onpointerenter: () => light_(cause.at), onpointerleave: () => light_(null) },
       chip(cause.at), el('b', { text: cause.rule.name }),
-      ` ${whole(cause.count)} ×, ${signed(cause.total)}, first at `,
+      ` ${whole(cause.count)} ×, ${cause.total === null ? 'sum not kept' : signed(cause.total)}, first at `,
       el('button', { type: 'button', class: 'link', text: `step ${whole(cause.first)}`, onclick: () => jump(cause.first) }),
       ...(beams ? [el('div', { class: 'fact', text: beams })] : []));
   })));
@@ -102,7 +109,7 @@ class Script {
     const texts = doc.script.replace(/\n$/, '').split('\n');
     this.lines = texts.map((text, index) => {
       const rule = owner(index + 1);
-      const line_ = el('div', {}, el('i', { text: index + 1 }), el('code', { text: text || ' ' }));
+      const line_ = el('div', {}, el('i', {}, ...(rule >= 0 && doc.rules[rule].line === index + 1 ? [chip(rule)] : []), `${index + 1}`), el('code', { text: text || ' ' }));
       if (rule >= 0) {
         line_.style.borderLeftColor = ruleInk(rule);
         line_.addEventListener('pointerenter', () => this.onRule(rule));

@@ -1,6 +1,8 @@
 // The table of states: its cells, the best action as an arrow, how often it was met, what the last save changed.
 
 const MOST_STATES = 96;
+/** Fewer visits than these leave a state unsure. */
+const FEW_VISITS = 10;
 
 /** An arrow from the bottom of the icon: longer is faster, to the left is a left turn. */
 function arrow([linear, angular], fastest, kind) {
@@ -49,10 +51,10 @@ class States {
       const action = doc.actions[row.best];
       const next = [...row.values.keys()].filter((at) => at !== row.best).sort((a, b) => row.values[b] - row.values[a]).slice(0, 2)
         .map((at) => `\nnext best: ${motion(doc.actions[at])}, value ${short(row.values[at])}`).join('');
-      const title = `state ${row.state}: ${motion(action)}, value ${short(row.value)}, met ${whole(row.visits)} times${next}`
+      const title = `state ${row.state}: ${motion(action)}, value ${short(row.value)}, met ${whole(row.visits)} times${row.visits < FEW_VISITS ? ', too seldom to be sure' : ''}${next}`
         + (differs ? `\nbefore the save: ${motion(doc.actions[last.best])}` : '');
       const button = el('button', {
-        type: 'button', title, class: `state${differs ? ' changed' : ''}${row.visits < 10 ? ' rare' : ''}`,
+        type: 'button', title, class: `state${differs ? ' changed' : ''}${row.visits < FEW_VISITS ? ' rare' : ''}`,
         onclick: () => this.onPick(row.state),
       }, stateIcon(doc, row, last),
       el('span', { class: 'number', text: `no. ${row.state}` }),
@@ -65,7 +67,7 @@ class States {
       + (rows.length < seed.states_met ? `, the ${rows.length} most met are shown` : '');
     const diff = before ? `; ${changed} change${changed === 1 ? 's' : ''} the best action since the last save (dashed: before)` : '';
     this.note.textContent = seed.states.length
-      ? `${met}: number and value of the best action, which the arrow shows; how often met${diff}` : 'nothing was learned';
+      ? `${met}: number and value of the best action, which the arrow shows; how often met${rows.some((row) => row.visits < FEW_VISITS) ? `; hatched: fewer than ${FEW_VISITS} times, unsure` : ''}${diff}` : 'nothing was learned';
     this.now = null;
   }
 

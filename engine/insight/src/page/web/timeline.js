@@ -1,6 +1,17 @@
-// All steps of a phase in one line, with a row of marks for each rule.
+// All steps of a phase in one line: a row of marks for each rule, and the reward of each step where it is more than marks.
 
 const ROW = 13;
+const TRACE = 40;
+const FOOT = 30;
+const TOTAL = 'reward of a step';
+/** A reward that is not 0 in a greater share of the steps is no rare punishment. */
+const RARE = 0.1;
+
+/** Whether the rows of the rules do not already say what the reward of a step was. */
+function speaks(doc, track) {
+  const often = track.reward.reduce((count, reward) => count + (reward !== 0), 0) > RARE * track.count;
+  return often || doc.rules.some((rule, at) => rule.value === null && track.firings(at) > 0);
+}
 
 class Timeline {
   constructor(box, onScrub) {
@@ -23,58 +34,100 @@ class Timeline {
   }
 
   drawBase(doc, track, litRule, swaps) {
-    const rules = doc.rules.map((_, rule) => rule).filter((rule) => marked(doc, rule));
-    this.box.style.height = `${rules.length * ROW + 26}px`;
+    const traced = Boolean(track?.count) && speaks(doc, track);
+    const foot = doc.rules.length * ROW + (traced ? TRACE : 0) + 1;
+    this.box.style.height = `${foot + FOOT}px`;
     const sheet = fit(this.base);
     this.frame = null;
     if (!sheet || !track || !track.count) return;
-    const { pen, width, height } = sheet;
-    const names = rules.map((rule) => doc.rules[rule].name);
-    const left = Math.min(width * 0.3, Math.max(40, ...names.map((name) => pen.measureText(name).width + 24)));
+    const { pen, width } = sheet;
+    const names = [...doc.rules.map((rule) => rule.name), ...(traced ? [TOTAL] : [])];
+    const left = Math.min(width * 0.3, Math.max(60, ...names.map((name) => pen.measureText(name).width + 24)));
     const wide = width - left - 8;
-    this.frame = { left, wide, steps: Math.max(track.end, 2), height };
-    const x = (step) => left + (step / (this.frame.steps - 1)) * wide;
-    rules.forEach((rule, row) => {
-      const y = row * ROW + 1;
-      pen.globalAlpha = litRule === null || litRule === rule ? 1 : 0.3;
-      pen.fillStyle = ink.soft;
-      pen.fillRect(left, y, wide, ROW - 3);
-      pen.fillStyle = ruleInk(rule);
-      pen.fillRect(0, y + 1, 8, 8);
-      pen.save();
-      pen.beginPath();
-      pen.rect(0, y, left - 8, ROW);
-      pen.clip();
-      label(pen, doc.rules[rule].name, 14, y + 5.5, 'left', 'middle', ink.text);
-      pen.restore();
-      pen.fillStyle = ruleInk(rule);
-      for (let index = 0; index < track.count; index += 1) {
-        if (track.fired(index, rule)) pen.fillRect(Math.round(x(track.step(index))) - 0.75, y, 1.5, ROW - 3);
-      }
-      pen.globalAlpha = 1;
-    });
-    const foot = rules.length * ROW + 1;
+    const steps = Math.max(track.end, 2);
+    this.frame = { left, wide, steps, foot, x: (step) => left + (step / (steps - 1)) * wide };
+    doc.rules.forEach((rule, at) => this.row(pen, track, rule, at, litRule));
+    if (traced) this.trace(pen, track, doc.rules.length * ROW + 1);
+    this.axis(pen, track, swaps);
+  }
+
+  /** Where one rule fired: its mark while they are few, else a stroke for each step. */
+  row(pen, track, rule, at, litRule) {
+    const { left, wide, x } = this.frame;
+    const y = at * ROW + 1;
+    const middle = y + (ROW - 3) / 2;
+    pen.globalAlpha = litRule === null || litRule === at ? 1 : 0.3;
+    pen.fillStyle = ink.soft;
+    pen.fillRect(left, y, wide, ROW - 3);
+    pen.fillStyle = ruleInk(at);
+    ruleMark(pen, at, 5, middle, 4);
+    pen.save();
+    pen.beginPath();
+    pen.rect(0, y, left - 8, ROW);
+    pen.clip();
+    label(pen, rule.name, 14, y + 5.5, 'left', 'middle', ink.text);
+    pen.restore();
+    pen.fillStyle = ruleInk(at);
+    const few = track.firings(at) <= MANY_MARKS;
+    for (let index = 0; index < track.count; index += 1) {
+      if (!track.fired(index, at)) continue;
+      if (few) ruleMark(pen, at, x(track.step(index)), middle, 4);
+      else pen.fillRect(Math.round(x(track.step(index))) - 0.75, y, 1.5, ROW - 3);
+    }
+    pen.globalAlpha = 1;
+  }
+
+  /** The reward of each step: in each column of pixels from the least to the greatest, and through their means. */
+  trace(pen, track, top) {
+    const { left, wide, x } = this.frame;
+    let [low, high] = [0, 0];
+    for (const reward of track.reward) { low = Math.min(low, reward); high = Math.max(high, reward); }
+    if (high === low) high = 1;
+    const y = (reward) => top + 4 + ((high - reward) / (high - low)) * (TRACE - 10);
+    pen.fillStyle = ink.soft;
+    pen.fillRect(left, top, wide, TRACE - 3);
+    label(pen, TOTAL, 14, top + 12, 'left', 'middle', ink.text);
+    label(pen, `${short(low)} to ${short(high)}`, 14, top + 26, 'left', 'middle');
+    line(pen, [[left, y(0)], [left + wide, y(0)]], ink.line, 1);
+    const columns = new Map();
+    for (let index = 0; index < track.count; index += 1) {
+      const at = Math.round(x(track.step(index)));
+      const reward = track.reward[index];
+      const column = columns.get(at) ?? { least: reward, most: reward, sum: 0, count: 0 };
+      column.least = Math.min(column.least, reward);
+      column.most = Math.max(column.most, reward);
+      column.sum += reward;
+      column.count += 1;
+      columns.set(at, column);
+    }
+    pen.fillStyle = ink.accent;
+    pen.globalAlpha = 0.35;
+    for (const [at, { least, most }] of columns) pen.fillRect(at - 0.5, y(most), 1, Math.max(y(least) - y(most), 1));
+    pen.globalAlpha = 1;
+    line(pen, [...columns].map(([at, { sum, count }]) => [at, y(sum / count)]), ink.accent, 1);
+  }
+
+  axis(pen, track, swaps) {
+    const { steps, foot, wide, x } = this.frame;
     for (const { step } of swaps) line(pen, [[x(step), 0], [x(step), foot]], ink.text, 1, [1, 3]);
-    for (const gap of track.spans.slice(1)) {
-      label(pen, '…', x(gap[0]), foot + 10, 'center');
-    }
-    for (const at of ticks(0, this.frame.steps, wide / 90)) {
-      if (at >= this.frame.steps) continue;
+    for (const gap of track.spans.slice(1)) label(pen, '…', x(gap[0]), foot + 10, 'center');
+    for (const at of ticks(0, steps, wide / 90)) {
+      if (at >= steps) continue;
       line(pen, [[x(at), foot], [x(at), foot + 4]], ink.route, 1);
-      label(pen, whole(at), x(at), foot + 15, 'center');
+      label(pen, whole(at), x(at), foot + 23, 'center');
     }
-    label(pen, 'step', 14, foot + 15, 'left');
+    label(pen, 'step', 14, foot + 23, 'left');
   }
 
   drawOver(step) {
     const sheet = fit(this.over);
     if (!sheet || !this.frame) return;
-    const { pen, height } = sheet;
-    const { left, wide, steps } = this.frame;
+    const { pen } = sheet;
+    const { left, wide, steps, foot } = this.frame;
     const x = left + (step / (steps - 1)) * wide;
-    line(pen, [[x, 0], [x, height - 20]], ink.text, 1.5);
+    line(pen, [[x, 0], [x, foot + 6]], ink.text, 1.5);
     pen.beginPath();
-    pen.arc(x, height - 20, 4, 0, 7);
+    pen.arc(x, foot + 6, 4, 0, 7);
     pen.fillStyle = ink.text;
     pen.fill();
   }
