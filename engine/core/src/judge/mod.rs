@@ -19,6 +19,7 @@ pub(crate) mod readings;
 pub(crate) mod rule;
 pub(crate) mod running;
 pub(crate) mod sandbox;
+pub(crate) mod stopped;
 pub(crate) mod views;
 
 pub use evaluate::Judgement;

@@ -3,6 +3,7 @@
 mod errors;
 mod mistakes;
 mod pages;
+mod running;
 mod same;
 mod types;
 

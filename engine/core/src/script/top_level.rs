@@ -6,7 +6,7 @@ use super::spoilt::Spoilt;
 use super::tree::Tree;
 use crate::diagnostic::{Diagnostic, Kind, MOST_MISTAKES, Mistakes};
 use crate::judge::explain::offset;
-use crate::judge::running;
+use crate::judge::{running, stopped};
 use rhai::{AST, Engine, EvalAltResult, Expr, Position, Scope, Stmt};
 use std::collections::BTreeSet;
 
@@ -26,7 +26,7 @@ pub(super) fn run(
     if mistakes.is_empty() {
         match engine.run_ast_with_scope(&mut scope, &tree.ast) {
             Ok(()) => return Ok(scope),
-            Err(error) => add(code, &error, log, mistakes)?,
+            Err(mut error) => add(code, &tree.ast, &mut error, log, mistakes)?,
         }
     }
     let mut failed = BTreeSet::new();
@@ -42,8 +42,8 @@ pub(super) fn run(
         let ast = AST::new(statements.collect::<Vec<_>>(), tree.ast.shared_lib().clone());
         log.clear();
         scope.clear();
-        let Err(error) = engine.run_ast_with_scope(&mut scope, &ast) else { return Ok(scope) };
-        add(code, &error, log, mistakes)?;
+        let Err(mut error) = engine.run_ast_with_scope(&mut scope, &ast) else { return Ok(scope) };
+        add(code, &tree.ast, &mut error, log, mistakes)?;
         // Where it was called from the top level, not where in a function it failed.
         let number = spoilt.statement_at(offset(&code.source, error.position()));
         if !number.is_some_and(|number| failed.insert(number)) {
@@ -53,7 +53,14 @@ pub(super) fn run(
     Ok(scope)
 }
 
-fn add(code: &Code, error: &EvalAltResult, log: &Log, mistakes: &mut Mistakes) -> Result<(), Diagnostic> {
+fn add(
+    code: &Code,
+    ast: &AST,
+    error: &mut EvalAltResult,
+    log: &Log,
+    mistakes: &mut Mistakes,
+) -> Result<(), Diagnostic> {
+    stopped::move_into_called(error, &code.source, ast);
     let wrong = running::explain(&code.source, error);
     if wrong.kind() == Kind::Limit || log.is_full() {
         return Err(wrong);
