@@ -10,7 +10,7 @@ use super::source::{self, Code};
 use super::spoilt::Spoilt;
 use super::tree::tree;
 use super::unread::Unread;
-use super::{names, parts, rehearsal, success, syntax, top_level, types};
+use super::{memory, names, parts, rehearsal, success, syntax, top_level, types};
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, printable};
 use crate::judge::compiled::CompiledScript;
 use crate::judge::needs::Needs;
@@ -77,6 +77,7 @@ impl Draft {
         let before = mistakes.count();
         let undefined = names::check_names(code, &tree, &spoilt, &mut needs, mistakes);
         undefined.into_iter().for_each(|name| spoilt.insert(name));
+        memory::check_memory(code, &tree.ast, mistakes);
         types::check_types(code, &tree.ast, mistakes);
         if let Some(refused) = &tree.refused
             && mistakes.count() == before

@@ -9,6 +9,7 @@ mod behaviour;
 mod bodies;
 mod compile;
 mod draft;
+mod memory;
 mod names;
 mod outline;
 mod parts;

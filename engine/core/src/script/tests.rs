@@ -1,6 +1,7 @@
 //! What a script does when it runs.
 
 mod errors;
+mod memory;
 mod mistakes;
 mod pages;
 mod running;

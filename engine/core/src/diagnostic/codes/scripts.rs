@@ -53,6 +53,15 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          something.",
     ),
     (
+        "E-SCRIPT-MEMORY",
+        Kind::Input,
+        "A function changes a variable that stands outside of it, or writes to 'this'. Such a variable is the same in every step: \
+         a script remembers nothing, so that each step can be judged again by itself.\n\
+         A rule can ask that its condition holds for a time (rule \"lost\" when laser.right > 1.0 for 6 seconds => -1;), and \
+         time.since_recovery counts the steps of an attempt. What is needed within one step only, define in the function with \
+         'let'.",
+    ),
+    (
         "E-SCRIPT-NAME",
         Kind::Input,
         "The script uses a name or a function that is not there, or with the wrong kind of value.\n\
