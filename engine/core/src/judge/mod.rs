@@ -21,6 +21,7 @@ pub(crate) mod running;
 pub(crate) mod sandbox;
 pub(crate) mod stopped;
 pub(crate) mod views;
+pub(crate) mod withheld;
 
 pub use evaluate::Judgement;
 pub use expression::Comparison;

@@ -30,6 +30,7 @@ mod tree;
 mod types;
 mod unknown;
 mod unread;
+mod words;
 
 pub use behaviour::Behaviour;
 pub(crate) use draft::Draft;

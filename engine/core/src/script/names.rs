@@ -10,7 +10,7 @@ use super::tree::Tree;
 use super::unknown::Unknown;
 use crate::diagnostic::{Diagnostic, Mistakes};
 use crate::judge::explain;
-use crate::judge::fact_table::{self, Fact, GROUPS, is_group, names_in, takes_arguments, value};
+use crate::judge::fact_table::{self, Fact, is_group, takes_arguments, value};
 use crate::judge::functions::FUNCTIONS;
 use crate::judge::needs::Needs;
 use rhai::{AST, ASTNode, Expr, FnCallExpr, Position, Stmt};
@@ -258,14 +258,10 @@ impl Names<'_> {
     }
 
     fn no_group(&mut self, name: &str, position: Position) {
-        let groups: Vec<_> = GROUPS.iter().map(|row| row.0).collect();
-        let owner = groups.iter().find(|group| names_in(group).contains(&name));
-        let help = match (crate::diagnostic::nearest_name(name, groups.iter().copied()), owner) {
-            (Some(near), _) => format!("did you mean '{near}'?"),
-            (None, Some(owner)) => format!("did you mean '{owner}.{name}'?"),
-            (None, None) => format!("there are: {}", groups.join(", ")),
-        };
-        self.mistake("E-SCRIPT-FACT", position, format!("there are no facts called '{name}'"), "not known", help);
+        let source = &self.code.source;
+        if self.mistakes.wants(source, explain::offset(source, position)) {
+            self.mistakes.add(explain::unknown_group(source, position, name));
+        }
     }
 
     fn group(&mut self, group: &str, links: &[Link<'_>]) {

@@ -7,6 +7,7 @@ mod pages;
 mod running;
 mod same;
 mod types;
+mod words;
 
 use super::*;
 use crate::diagnostic::{Diagnostic, SourceText};

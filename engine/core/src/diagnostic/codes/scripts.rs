@@ -118,11 +118,24 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          ';'.",
     ),
     (
+        "E-SCRIPT-TRUTH",
+        Kind::Input,
+        "The script asks for what only the simulator knows: where the robot is, how far along its route, where its goal lies.\n\
+         A robot does not have that, and a reward that reads it cannot be learned on one. Scripts see what the robot measures \
+         (scripts/README.md, Facts); laps and places are judged by the test: success \"drives round\" when test.laps > 3;",
+    ),
+    (
         "E-SCRIPT-TYPE",
         Kind::Input,
         "A truth value stands where a number belongs, or a number where something true or false belongs.\n\
          Facts such as robot.contact are true or false already: write robot.contact, not robot.contact == 1, which is never \
          true. Two limits are two comparisons: 0.3 < laser.front && laser.front < 0.6.",
+    ),
+    (
+        "E-SCRIPT-WORD",
+        Kind::Input,
+        "A word of another language stands where it means nothing: 'and' is written &&, 'or' ||, 'not' !; numbers have no units, \
+         0.25 is metres; how an attempt ends stands at the end of a rule, after 'then'.",
     ),
     (
         "E-SET",

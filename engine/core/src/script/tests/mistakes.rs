@@ -76,8 +76,8 @@ fn one_cause_is_told_once() {
 rule \"a\" when laser.right > FAR => 1;\nrule \"b\" when laser.right > near => half(1);\nfn reward(facts) { half(1) }";
     expect(text, &[(1, "lasr")]);
     // A definition that is missing is missing once; a slip of the pen is to be mended in each place.
-    expect("rule \"a\" when speed > 1 => 1;\nrule \"b\" when speed > 2 => wave(speed);", &[(1, "speed"), (2, "wave")]);
-    let help = wrong("rule \"a\" when speed > 1 => 1;\nrule \"b\" when speed > 2 => 1;").help.unwrap();
+    expect("rule \"a\" when limit > 1 => 1;\nrule \"b\" when limit > 2 => wave(limit);", &[(1, "limit"), (2, "wave")]);
+    let help = wrong("rule \"a\" when limit > 1 => 1;\nrule \"b\" when limit > 2 => 1;").help.unwrap();
     assert!(help.ends_with("(it stands in line 2 too)"), "{help}");
     expect("rule \"a\" when lasr.right > 1 => 1;\nrule \"b\" when lasr.left > 1 => 1;", &[(1, "lasr"), (2, "lasr")]);
     // A setting that could not be read is not relied upon.
