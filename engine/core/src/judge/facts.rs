@@ -48,6 +48,16 @@ impl Facts {
         self.ranges_m.get(from..=to).unwrap_or_default()
     }
 
+    /// The beam ahead: the middle one; of two middle ones that with the lesser range, the right one of equals.
+    #[must_use]
+    pub(super) fn front_beam(&self) -> usize {
+        let middle = self.ranges_m.len() / 2;
+        match self.ranges_m.len() % 2 {
+            0 if middle > 0 && self.ranges_m[middle - 1] <= self.ranges_m[middle] => middle - 1,
+            _ => middle,
+        }
+    }
+
     /// The beam with the least range, the rightmost of equals.
     #[must_use]
     pub(crate) fn nearest_beam(&self) -> usize {

@@ -126,7 +126,7 @@ impl BeamSought {
         match self {
             Self::Nowhere => None,
             Self::One(beam) => Some(beam),
-            Self::Middle => Some(ranges_m.len() / 2),
+            Self::Middle => Some(inputs.facts.front_beam()),
             Self::Last => Some(last),
             Self::Least(from, to) => find(from, to, least),
             Self::Greatest(from, to) => find(from, to, greatest),

@@ -89,6 +89,9 @@ fn body(ast: &AST, function: &str) -> Vec<Stmt> {
     body
 }
 
+/// The functions of this name alone.
 fn functions_of_name(ast: &AST, function: &str) -> AST {
-    ast.clone_functions_only_filtered(|_, _, _, name, _| name == function)
+    let mut only = ast.clone_functions_only();
+    only.retain_functions(|_, _, name, _| name == function);
+    only
 }

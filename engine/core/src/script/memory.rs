@@ -16,15 +16,12 @@ const INSTEAD: &str =
 pub(super) fn check_memory(code: &Code, ast: &AST, mistakes: &mut Mistakes) {
     // A switch is not walked in the same order each time.
     let mut changes: Vec<(usize, Position, String)> = Vec::new();
-    for function in ast.iter_functions() {
-        let judges = matches!(function.name, "reward" | "calibrate");
-        ast.clone_functions_only_filtered(|_, _, _, name, _| name == function.name).walk(&mut |path| {
-            if let Some((name, position)) = changed(path).or_else(|| this(path).filter(|_| judges)) {
-                changes.push((offset(&code.source, position), position, name.to_owned()));
-            }
-            true
-        });
-    }
+    ast.clone_functions_only().walk(&mut |path: &[ASTNode<'_>]| {
+        if let Some((name, position)) = changed(path).or_else(|| this(path)) {
+            changes.push((offset(&code.source, position), position, name.to_owned()));
+        }
+        true
+    });
     changes.sort_unstable();
     let mut told = BTreeSet::new();
     for (_, position, name) in changes {
@@ -33,7 +30,7 @@ pub(super) fn check_memory(code: &Code, ast: &AST, mistakes: &mut Mistakes) {
         }
         let name = printable(&name);
         let (message, label, help) = match name.as_str() {
-            "this" => ("'this' stands for nothing in a function that judges".to_owned(), "nothing", INSTEAD.to_owned()),
+            "this" => ("'this' stands for nothing in a function".to_owned(), "nothing", INSTEAD.to_owned()),
             _ => (
                 format!("'{name}' stands outside of the function: it is the same in every step"),
                 "cannot be changed here",

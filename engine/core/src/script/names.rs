@@ -1,6 +1,6 @@
 //! Every name in a script checked before anything runs: facts, functions, and where a rule may stand.
 
-use super::access::{Access, Link};
+use super::access::{Access, Link, fact_of};
 use super::setup_table::SETUP;
 use super::source::Code;
 use super::spoilt::Spoilt;
@@ -36,8 +36,20 @@ pub(super) fn check_names(
     let unknown = Unknown::default();
     let figures = success::is_asked_for(code);
     let in_function = false;
-    let mut names =
-        Names { code, own, facts_names, variables, spoilt, calibrates, figures, in_function, needs, unknown, mistakes };
+    let mut names = Names {
+        code,
+        own,
+        facts_names,
+        variables,
+        spoilt,
+        calibrates,
+        figures,
+        in_function,
+        unknown_calls: BTreeSet::new(),
+        needs,
+        unknown,
+        mistakes,
+    };
     names.own_functions();
     names.walk(&ast.clone_statements_only());
     names.in_function = true;
@@ -57,6 +69,8 @@ struct Names<'a> {
     /// Whether `test` and `untrained` are figures, and not the script's own names.
     figures: bool,
     in_function: bool,
+    /// Where calls stand that do not exist: what they are given is not looked at.
+    unknown_calls: BTreeSet<Position>,
     needs: &'a mut Needs,
     unknown: Unknown,
     mistakes: &'a mut Mistakes,
@@ -118,7 +132,7 @@ impl Names<'_> {
                 );
             }
             // It reads other names where it belongs; what a success reads is looked at where it is compiled.
-            _ if misplaced || success => {}
+            _ if misplaced || success || self.is_given_to_unknown(path) => {}
             Some(ASTNode::Stmt(Stmt::Var(variable, ..))) if !self.in_function && path.len() == 1 => {
                 self.defined(&variable.0.name, variable.0.pos);
             }
@@ -130,6 +144,18 @@ impl Names<'_> {
             Some(ASTNode::Expr(expr @ Expr::Variable(..))) => self.variable(expr, in_rule),
             _ => {}
         }
+    }
+
+    fn is_given_to_unknown(&self, path: &[ASTNode<'_>]) -> bool {
+        let above = path.split_last().map_or(path, |(_, above)| above);
+        !self.unknown_calls.is_empty()
+            && above.iter().any(|node| match node {
+                ASTNode::Stmt(Stmt::FnCall(_, position))
+                | ASTNode::Expr(Expr::FnCall(_, position) | Expr::MethodCall(_, position)) => {
+                    self.unknown_calls.contains(position)
+                }
+                _ => false,
+            })
     }
 
     fn defined(&mut self, name: &str, position: Position) {
@@ -199,6 +225,7 @@ impl Names<'_> {
             let message = format!("'{name}' takes {wanted} arguments, found {found}");
             self.mistake("E-SCRIPT-NAME", position, message, "here", "look at its definition");
         } else if !self.spoilt.has(name) {
+            self.unknown_calls.insert(position);
             self.unknown.function(name, explain::offset(&self.code.source, position));
         }
     }
@@ -220,7 +247,7 @@ impl Names<'_> {
         let Some(access) = Access::of(expr) else { return false };
         let all = self.facts_names.iter().any(|name| name == access.root);
         let group = if all { access.group_of_facts() } else { access.group() };
-        group.is_some_and(|(group, _)| is_group(group))
+        group.is_some_and(|(group, links)| is_group(group) && fact_of(group, links).is_some())
     }
 
     /// `1 / 2` is 0 between whole numbers: nobody means that.
@@ -312,7 +339,10 @@ impl Names<'_> {
                 let message = format!("'{group}.{name}' is a value, not a function");
                 self.mistake("E-SCRIPT-FACT", position, message, "here", format!("write {group}.{name}"));
             }
-            None => self.unknown_fact(group, name, position),
+            None => {
+                self.unknown_calls.insert(position);
+                self.unknown_fact(group, name, position);
+            }
             Some((form, arguments)) if arguments != call.args.len() => {
                 let message = format!("'{name}' takes {arguments} arguments, found {}", call.args.len());
                 self.mistake("E-SCRIPT-FACT", position, message, "here", format!("write {form}"));

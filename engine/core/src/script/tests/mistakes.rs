@@ -94,6 +94,16 @@ rule \"a\" when laser.right > FAR => 1;\nrule \"b\" when laser.right > near => h
 }
 
 #[test]
+fn what_an_unknown_call_is_given_is_not_looked_at() {
+    expect("rule \"a\" when camera.colour(laser.lft) == \"red\" => 1;", &[(1, "colour")]);
+    expect(&format!("state([laser.left, laser.front]); {RULE}"), &[(1, "state")]);
+    expect("rule \"a\" when wave(laser.rigth, laser[999]) > 1 => 1;", &[(1, "wave")]);
+    expect("fn reward(facts) { facts.laser.mode(nothing, 1 / 2) }", &[(1, "mode")]);
+    // What stands beside it is.
+    expect("rule \"a\" when wave(1) > laser.rigth => 1;", &[(1, "wave"), (1, "rigth")]);
+}
+
+#[test]
 fn a_statement_that_cannot_be_parsed_does_not_hide_the_others() {
     let text = "camera(#{ tilt_deg: 42 ;\n";
     assert_eq!(told(&format!("{text}{RULE}")).len(), 1);

@@ -70,6 +70,9 @@ fn a_limit_points_at_the_loop_that_ran() {
     let spin = "fn spin(x) {\nlet y = x;\nwhile true {\ny += 1;\n}\n}\n";
     stopped(&format!("{spin}fn reward(facts) {{\nspin(1)\n}}"), &[3, 4]);
     stopped(&format!("{spin}rule \"a\" when spin(1) => -1;"), &[3, 4]);
+    // A loop of another function has no part in it.
+    let other = "fn other(x) {\nfor i in 0..2 {}\n}\n";
+    stopped(&format!("{spin}{other}fn reward(facts) {{\nother(1);\nspin(1)\n}}"), &[3, 4]);
     stopped(&format!("{spin}let a = spin(1);\n{rule}"), &[3, 4]);
     stopped("fn deep(x) {\ndeep(x)\n}\nfn reward(facts) {\ndeep(1)\n}", &[5]);
 }
