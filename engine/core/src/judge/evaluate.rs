@@ -7,7 +7,6 @@ use super::facts::Facts;
 use super::readings::Part;
 use super::rule::{Clause, CompiledRule, ScriptClause};
 use super::running;
-use super::stopped;
 use super::views::{AllFacts, number, view};
 use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
 use crate::outcome::Then;
@@ -100,7 +99,7 @@ impl Present {
 
     fn told(&self, mut error: Box<EvalAltResult>) -> Box<Diagnostic> {
         let source = &self.compiled.source;
-        stopped::move_into_called(&mut error, source, &self.compiled.ast);
+        self.compiled.stops.move_into_called(&mut error, source);
         Box::new(running::explain(source, &error))
     }
 
@@ -118,7 +117,7 @@ impl Present {
         let arguments = (self.all(),);
         let CompiledScript { engine, ast, .. } = compiled;
         let result = engine.call_fn_with_options(options, &mut Scope::new(), ast, function, arguments);
-        let placed = |error| stopped::placed_in(error, engine, ast, function, Dynamic::from(self.all()));
+        let placed = |error| compiled.stops.placed_in(error, engine, function, Dynamic::from(self.all()));
         result.map_err(|error| self.told(placed(error)))
     }
 

@@ -3,7 +3,7 @@
 use super::explain::offset;
 use super::sandbox;
 use crate::diagnostic::SourceText;
-use rhai::{AST, ASTNode, Dynamic, Engine, EvalAltResult, Scope, Stmt};
+use rhai::{AST, Dynamic, Engine, EvalAltResult, Position, Scope};
 
 /// What stopped a script, if a limit did, and what to look for.
 pub(crate) fn stopped(error: &EvalAltResult) -> Option<(String, &'static str)> {
@@ -33,65 +33,50 @@ pub(crate) fn stopped(error: &EvalAltResult) -> Option<(String, &'static str)> {
     })
 }
 
-/// The same failure at the line where a limit stopped `function` on the facts.
-///
-/// The interpreter forgets the line on its way out of a function, and keeps it at the top level: the body is run again as one.
-pub(crate) fn placed_in(
-    error: Box<EvalAltResult>,
-    engine: &Engine,
-    ast: &AST,
-    function: &str,
-    facts: impl Into<Dynamic>,
-) -> Box<EvalAltResult> {
-    let Some(argument) = ast.iter_functions().find(|known| known.name == function && known.params.len() == 1) else {
-        return error;
-    };
-    if stopped(&error).is_none() {
-        return error;
-    }
-    let body = AST::new(body(ast, function), ast.shared_lib().clone());
-    let mut scope = Scope::new();
-    scope.push_dynamic(argument.params[0], facts.into());
-    match engine.eval_ast_with_scope::<Dynamic>(&mut scope, &body) {
-        Err(again) if stopped(&again).is_some() => again,
-        _ => error,
-    }
+/// Where in a script a limit can stop it: the interpreter forgets the line on its way out of a function.
+#[derive(Debug, Default)]
+pub(crate) struct StopPlaces {
+    /// The functions that judge.
+    pub bodies: Vec<FunctionBody>,
+    /// The loop of each function that has only one.
+    pub loops: Vec<(String, Position)>,
 }
 
-/// Moves the failure into the loop of a function, if it stopped where this is called and it has no other loop.
-pub(crate) fn move_into_called(error: &mut EvalAltResult, source: &SourceText, ast: &AST) {
-    if !matches!(error, EvalAltResult::ErrorTooManyOperations(_) | EvalAltResult::ErrorDataTooLarge(..)) {
-        return;
-    }
-    let called = &source.text[source.word_at(offset(source, error.position()))];
-    let mut loops = Vec::new();
-    functions_of_name(ast, called).walk(&mut |path: &[ASTNode<'_>]| {
-        if let Some(ASTNode::Stmt(Stmt::While(_, position) | Stmt::Do(_, _, position) | Stmt::For(_, position))) =
-            path.last()
-        {
-            loops.push(*position);
+/// A function of one argument as a program of its own: at the top level the interpreter keeps the line.
+#[derive(Debug)]
+pub(crate) struct FunctionBody {
+    pub name: String,
+    pub argument: String,
+    pub ast: AST,
+}
+
+impl StopPlaces {
+    /// The same failure at the line where a limit stopped `function` on the facts, which is found by running it again.
+    pub(crate) fn placed_in(
+        &self,
+        error: Box<EvalAltResult>,
+        engine: &Engine,
+        function: &str,
+        facts: impl Into<Dynamic>,
+    ) -> Box<EvalAltResult> {
+        let body = self.bodies.iter().find(|body| body.name == function).filter(|_| stopped(&error).is_some());
+        let Some(body) = body else { return error };
+        let mut scope = Scope::new();
+        scope.push_dynamic(body.argument.as_str(), facts.into());
+        match engine.eval_ast_with_scope::<Dynamic>(&mut scope, &body.ast) {
+            Err(again) if stopped(&again).is_some() => again,
+            _ => error,
         }
-        true
-    });
-    if let [only] = loops[..] {
-        error.set_position(only);
     }
-}
 
-fn body(ast: &AST, function: &str) -> Vec<Stmt> {
-    let mut body = Vec::new();
-    functions_of_name(ast, function).walk(&mut |path: &[ASTNode<'_>]| {
-        if let [ASTNode::Stmt(statement)] = path {
-            body.push(Stmt::clone(statement));
+    /// Moves the failure into the loop of a function, if it stopped where this is called and it has no other loop.
+    pub(crate) fn move_into_called(&self, error: &mut EvalAltResult, source: &SourceText) {
+        if !matches!(error, EvalAltResult::ErrorTooManyOperations(_) | EvalAltResult::ErrorDataTooLarge(..)) {
+            return;
         }
-        true
-    });
-    body
-}
-
-/// The functions of this name alone.
-fn functions_of_name(ast: &AST, function: &str) -> AST {
-    let mut only = ast.clone_functions_only();
-    only.retain_functions(|_, _, name, _| name == function);
-    only
+        let called = &source.text[source.word_at(offset(source, error.position()))];
+        if let Some((_, place)) = self.loops.iter().find(|(name, _)| name == called) {
+            error.set_position(*place);
+        }
+    }
 }

@@ -10,7 +10,7 @@ use super::source::{self, Code};
 use super::spoilt::Spoilt;
 use super::tree::tree;
 use super::unread::Unread;
-use super::{memory, names, parts, rehearsal, success, syntax, top_level, types};
+use super::{memory, names, parts, rehearsal, stops, success, syntax, top_level, types};
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, printable};
 use crate::judge::compiled::CompiledScript;
 use crate::judge::needs::Needs;
@@ -110,8 +110,9 @@ impl Draft {
             true => outline_of(code, &tree.ast, &constants, &rules),
             false => ScriptOutline::default(),
         };
-        let (source, ast) = (code.source.clone(), tree.ast);
-        let compiled = CompiledScript { source, engine, ast, constants, rules, needs, reward, reward_parts, calibrate };
+        let (source, stops, ast) = (code.source.clone(), stops::stop_places(&tree.ast), tree.ast);
+        let compiled =
+            CompiledScript { source, engine, ast, constants, rules, needs, reward, reward_parts, calibrate, stops };
         let behaviour = Behaviour::new(name, settings, places, outline, compiled).with_success(success);
         check_with_settings(&behaviour, &mut spoilt, &unread, mistakes)?;
         Ok((behaviour, unread))

@@ -23,6 +23,7 @@ mod setup;
 mod setup_table;
 mod source;
 mod spoilt;
+mod stops;
 mod success;
 mod syntax;
 mod top_level;

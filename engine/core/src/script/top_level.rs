@@ -3,10 +3,11 @@
 use super::setup::Log;
 use super::source::Code;
 use super::spoilt::Spoilt;
+use super::stops::stop_places;
 use super::tree::Tree;
 use crate::diagnostic::{Diagnostic, Kind, MOST_MISTAKES, Mistakes};
 use crate::judge::explain::offset;
-use crate::judge::{running, stopped};
+use crate::judge::running;
 use rhai::{AST, Engine, EvalAltResult, Expr, Position, Scope, Stmt};
 use std::collections::BTreeSet;
 
@@ -60,7 +61,7 @@ fn add(
     log: &Log,
     mistakes: &mut Mistakes,
 ) -> Result<(), Diagnostic> {
-    stopped::move_into_called(error, &code.source, ast);
+    stop_places(ast).move_into_called(error, &code.source);
     let wrong = running::explain(&code.source, error);
     if wrong.kind() == Kind::Limit || log.is_full() {
         return Err(wrong);

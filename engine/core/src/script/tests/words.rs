@@ -1,6 +1,9 @@
 //! Words of other languages and of other simulators, answered with what is written here.
 
 use super::parse;
+use crate::judge::fact_table::{call, value};
+use crate::judge::withheld::{MEASURED, WITHHELD};
+use crate::verdict::FIGURES;
 
 /// One cause, one error: its code, what is marked, and its help.
 fn expect(text: &str, code: &str, marked: &str, help: &str) {
@@ -78,4 +81,19 @@ fn a_setting_in_a_rule_is_answered_with_its_value() {
         "write its value: 8.192, unless laser(#{ max_range_m: ... })",
     );
     fact("camera.tilt_deg > 40", "tilt_deg", "write its value: 42");
+}
+
+#[test]
+fn every_advice_names_facts_and_figures_that_exist() {
+    let is_fact = |name: &str| {
+        let (group, key) = name.split_once('.').unwrap();
+        value(group, key).is_some() || call(group, key).is_some()
+    };
+    assert!(MEASURED.iter().all(|(_, fact)| is_fact(fact)));
+    for row in WITHHELD {
+        let figure = row.success.split([' ', '.']).nth(1).unwrap();
+        assert!(FIGURES.iter().any(|known| known.name == figure), "{figure}");
+        let mut named = row.fact.split([' ', ',', '(']).filter(|word| word.contains('.')).peekable();
+        assert!(named.peek().is_some() && named.all(is_fact), "{}", row.fact);
+    }
 }
