@@ -194,6 +194,9 @@ fn the_minisign_program_agrees_about_signatures() {
     bench.ok(&["pack", "verify", &file, "--key", "their.pub"]);
     assert!(minisign(&["-S", "-s", "their.key", "-m", &file, "-t", "another comment"]));
     refused(&bench, &["pack", "verify", &file, "--key", "their.pub"], "E-TRUST-SIGNATURE");
+    assert!(minisign(&["-S", "-s", "their.key", "-m", &file]));
+    let unnamed = refused(&bench, &["pack", "verify", &file, "--key", "their.pub"], "E-TRUST-SIGNATURE");
+    assert!(unnamed.contains(&format!("minisign -S -t '{comment}'")), "{unnamed}");
 }
 
 #[test]
