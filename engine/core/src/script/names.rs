@@ -272,6 +272,12 @@ impl Names<'_> {
                 {
                     return self.no_group(group, position);
                 }
+                // As a dictionary is read elsewhere: `params["speed"]`.
+                if let Some(Link::Index(Expr::StringConstant(group, position))) = access.links.first()
+                    && !is_group(group)
+                {
+                    return self.no_group(group, *position);
+                }
                 access.group_of_facts()
             }
             (false, false) if in_rule && !access.is_local => access.group(),

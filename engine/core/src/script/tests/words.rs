@@ -60,6 +60,8 @@ fn what_only_the_simulator_knows_is_answered_with_the_test_and_a_sensor() {
     expect(&function("all_wheels_on_track"), "E-SCRIPT-TRUTH", "all_wheels_on_track", "test.off_route < 0.05");
     expect(&function("track_width > 1.0"), "E-SCRIPT-TRUTH", "track_width", "laser.left and laser.right");
     expect(&function("waypoints[0] > 1.0"), "E-SCRIPT-TRUTH", "waypoints", "test.laps > 3");
+    let pasted = "fn reward(params) { if params[\"track_width\"] > 1.0 { 1 } else { 0 } }";
+    expect(pasted, "E-SCRIPT-TRUTH", "\"", "laser.left and laser.right");
     // What is measured has only another name.
     expect(&function("speed > 1.0"), "E-SCRIPT-FACT", "speed", "did you mean 'robot.linear'?");
     expect(&function("steps > 10"), "E-SCRIPT-FACT", "steps", "did you mean 'time.since_recovery'?");
