@@ -50,6 +50,8 @@ pub(super) fn unknown_foreign_changed_and_revoked_keys_are_refused() {
     bench.ok(&["pack", "verify", &file]);
     std::fs::remove_file(bench.path().join(".config/trust.toml")).unwrap();
     assert!(refused(&bench, &["pack", "verify", &file], "E-TRUST-KEY").contains("engine pack trust ada --key"));
+    let missing = bench.failure(&["pack", "trust", "bob", "--key", "nosuch.pub"]);
+    assert!(missing.contains("there is no key file 'nosuch.pub'"), "{missing}");
     bench.ok(&["pack", "trust", "bob", "--key", "ada.pub"]);
     refused(&bench, &["pack", "verify", &file], "E-TRUST-OWNER");
     bench.ok(&["pack", "keygen", "other", "--no-password"]);
@@ -192,6 +194,9 @@ fn the_minisign_program_agrees_about_signatures() {
     bench.ok(&["pack", "verify", &file, "--key", "their.pub"]);
     assert!(minisign(&["-S", "-s", "their.key", "-m", &file, "-t", "another comment"]));
     refused(&bench, &["pack", "verify", &file, "--key", "their.pub"], "E-TRUST-SIGNATURE");
+    assert!(minisign(&["-S", "-s", "their.key", "-m", &file]));
+    let unnamed = refused(&bench, &["pack", "verify", &file, "--key", "their.pub"], "E-TRUST-SIGNATURE");
+    assert!(unnamed.contains(&format!("minisign -S -t '{comment}'")), "{unnamed}");
 }
 
 #[test]

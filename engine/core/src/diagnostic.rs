@@ -177,10 +177,10 @@ impl Diagnostic {
         self
     }
 
-    /// Adds the next step.
+    /// Adds the next step; an empty text adds none.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
-        self.help = Some(help.into());
+        self.help = Some(help.into()).filter(|help: &String| !help.is_empty());
         self
     }
 

@@ -69,7 +69,12 @@ impl Signature {
         minisign::verify(&key, &self.parsed, Cursor::new(pack.bytes()), true, false, false)
             .map_err(|_| wrong("the pack or the signature was changed, or they belong to others"))?;
         let comment = self.parsed.trusted_comment().map_err(|_| wrong("its comment is missing"))?;
-        if comment != trusted_comment(pack) {
+        let meant = trusted_comment(pack);
+        if comment != meant && !comment.starts_with(DOMAIN) {
+            let unnamed = *wrong("its trusted comment does not name the pack, as when minisign signs without -t");
+            return unnamed.help(format!("sign with engine pack sign, or with minisign -S -t '{meant}'")).fail();
+        }
+        if comment != meant {
             return Err(wrong(&format!("it was made for '{}'", printable(&comment))));
         }
         Ok(())

@@ -5,43 +5,33 @@ use std::sync::Arc;
 
 use super::Plan;
 use crate::diagnostic::{Diagnostic, Result};
+use crate::filter::Chain;
 use crate::geometry::Pose;
+use crate::random::{Random, Stream};
+use crate::robot::{Robot, SimulatedRobot};
 use crate::sensors::Camera;
-use crate::sensors::observation::Image;
-use crate::settings::CameraSettings;
+use crate::sensors::observation::{Image, Observation};
+use crate::settings::Settings;
 use crate::world::World;
+use filter_api::Format;
 
 /// Directions in which the camera looks from each place.
 const HEADINGS: usize = 8;
 /// Places on the lap route from which it looks.
 const PLACES: usize = 16;
+/// Steps at random in which something must come into sight, if nothing is at the starts.
+const TRIAL_STEPS: u32 = 3_000;
 
-/// Looks round from every start and along the lap route, and is content with the first pixel that the filters leave.
+/// Is content with the first pixel that the filters leave: at the starts, or, since what is sought may stand round a corner, in
+/// a trial.
 ///
 /// # Errors
 /// `E-FILTER-BLIND` if they leave none anywhere.
 pub(super) fn check_outlook(plan: &Plan) -> Result<()> {
-    let (settings, layout) = (&plan.settings, &plan.layout);
-    let mut world = World::new(Arc::clone(layout), &[settings.robot], settings.run.period_s, 0);
-    // Noise would be taken for something seen.
-    let mut camera = Camera::new(&layout.scene, &CameraSettings { noise: 0.0, ..settings.camera.clone() }, 0);
-    let mut chain = plan.chain()?;
-    let mut image = Image::new(settings.camera.width_px as usize, settings.camera.height_px as usize);
-    let lap = layout.lap.map(|lap| &layout.routes[lap]);
-    let along = lap
-        .into_iter()
-        .flat_map(|route| (0..PLACES).map(|place| route.pose_at(route.length_m() * place as f64 / PLACES as f64)));
-    for place in layout.starts.iter().copied().chain(along) {
-        for heading in 0..HEADINGS {
-            let turn = TAU * heading as f64 / HEADINGS as f64;
-            world.place(0, Pose::new(place.x_m, place.y_m, place.yaw_rad + turn));
-            camera.render(&world.body(0).world_from_robot(), world.seen_by(0), &mut image);
-            // A filter that fails says so itself, in the run.
-            if chain.apply(&image).is_ok_and(|mask| mask.contains(&255)) {
-                return Ok(());
-            }
-        }
+    if plan.sees_at_the_starts()? || sees_in_a_trial(plan)? {
+        return Ok(());
     }
+    let (settings, layout) = (&plan.settings, &plan.layout);
     let stages = settings.filters.len();
     let place = format!("filter:{}", stages.saturating_sub(1));
     let message =
@@ -50,7 +40,72 @@ pub(super) fn check_outlook(plan: &Plan) -> Result<()> {
         "check the filter's parameters, the camera's tilt and height, and that the world shows what the filter looks for",
     );
     match plan.behaviour.place_of(&place) {
-        Some(span) => error.at(plan.behaviour.source(), span, "sees nothing from any start").fail(),
+        Some(span) => error
+            .at(plan.behaviour.source(), span, format!("sees nothing from any start, nor in {TRIAL_STEPS} steps"))
+            .fail(),
         None => error.fail(),
     }
+}
+
+impl Plan {
+    /// Whether the filters leave any pixel of what the camera sees, all round, from the starts and along the lap route.
+    ///
+    /// # Errors
+    /// If the filter chain cannot be built.
+    pub fn sees_at_the_starts(&self) -> Result<bool> {
+        let (settings, layout) = (&self.settings, &self.layout);
+        let mut world = World::new(Arc::clone(layout), &[settings.robot], settings.run.period_s, 0);
+        let mut camera = Camera::new(&layout.scene, &without_noise(settings).camera, 0);
+        let mut chain = self.chain()?;
+        let mut image = Image::new(settings.camera.width_px as usize, settings.camera.height_px as usize);
+        let lap = layout.lap.map(|lap| &layout.routes[lap]);
+        let along = lap
+            .into_iter()
+            .flat_map(|route| (0..PLACES).map(|place| route.pose_at(route.length_m() * place as f64 / PLACES as f64)));
+        for place in layout.starts.iter().copied().chain(along) {
+            for heading in 0..HEADINGS {
+                let turn = TAU * heading as f64 / HEADINGS as f64;
+                world.place(0, Pose::new(place.x_m, place.y_m, place.yaw_rad + turn));
+                camera.render(&world.body(0).world_from_robot(), world.seen_by(0), &mut image);
+                if leaves_any(&mut chain, &image) {
+                    return Ok(true);
+                }
+            }
+        }
+        Ok(false)
+    }
+}
+
+/// Whether the filters leave any pixel while the robot drives about at random.
+fn sees_in_a_trial(plan: &Plan) -> Result<bool> {
+    let settings = without_noise(&plan.settings);
+    let mut robot = SimulatedRobot::new(&plan.layout, &settings, 0)?;
+    let mut chain = plan.chain()?;
+    let mut random = Random::new(0, Stream::Untrained);
+    let (width, height) = (settings.camera.width_px as usize, settings.camera.height_px as usize);
+    let mut observation = Observation::asking_for(Format::Rgb, width, height, settings.laser.beams as usize);
+    for _ in 0..TRIAL_STEPS {
+        // A sensor that fails says so itself, in the run.
+        if robot.observe(&mut observation).is_err() || leaves_any(&mut chain, &observation.image) {
+            return Ok(true);
+        }
+        if observation.contact || observation.fallen {
+            robot.recover()?;
+        } else if let Some(action) = settings.actions.get(random.below(settings.actions.len() as u32) as usize) {
+            robot.act(*action)?;
+        }
+    }
+    Ok(false)
+}
+
+/// Noise would be taken for something seen.
+fn without_noise(settings: &Settings) -> Settings {
+    let mut settings = settings.clone();
+    settings.camera.noise = 0.0;
+    settings
+}
+
+/// A filter that fails says so itself, in the run.
+fn leaves_any(chain: &mut Chain, image: &Image) -> bool {
+    chain.apply(image).is_ok_and(|mask| mask.contains(&255))
 }

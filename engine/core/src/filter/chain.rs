@@ -93,7 +93,7 @@ impl Chain {
             if let Some(format) = format.filter(|format| !descriptor.reads.contains(format)) {
                 let message =
                     format!("filter '{}' reads {}, not {}", filter.name, names(descriptor.reads), name(format));
-                let place = better_place(descriptor.reads, &before, catalogue);
+                let place = better_place(descriptor, &before, catalogue);
                 faults.push(ChainError::new(index, message, Some(place)));
             }
             faults.extend(values(index, filter, descriptor.parameters).1);
@@ -155,8 +155,16 @@ fn create(entry: &Arc<Entry>, values: &[f64], reads: Format) -> Result<Box<dyn R
     (entry.create)(values)
 }
 
-/// Where in the chain a filter could read what is there, as an advice.
-fn better_place(reads: &[Format], before: &[&Descriptor], catalogue: &Catalogue) -> String {
+/// Where in the chain a filter could read what is there, as an advice; nowhere beside another one that makes the mask.
+fn better_place(filter: &Descriptor, before: &[&Descriptor], catalogue: &Catalogue) -> String {
+    let makes_mask = |filter: &Descriptor| filter.writes == Format::Mask && !filter.reads.contains(&Format::Mask);
+    if let (true, Some(other)) = (makes_mask(filter), before.iter().find(|other| makes_mask(other))) {
+        return match other.name == filter.name {
+            true => format!("one chain makes one mask: only one '{}' can be in it", filter.name),
+            false => format!("one chain makes one mask: leave out '{}' or '{}'", other.name, filter.name),
+        };
+    }
+    let reads = filter.reads;
     let written = before.iter().map(|descriptor| descriptor.writes);
     if std::iter::once(Format::Rgb).chain(written).any(|format| reads.contains(&format)) {
         return "put it earlier in the chain".to_owned();
@@ -284,6 +292,10 @@ mod tests {
         let after_mask = error(&[stage("threshold", &[]), stage("blur", &[])]);
         assert_eq!(after_mask.message, "filter 'blur' reads grey or colour, not a mask");
         assert_eq!(after_mask.help.as_deref(), Some("put it earlier in the chain"));
+        let two_masks = error(&[stage("colour", &[]), stage("colour", &[])]);
+        assert_eq!(two_masks.help.as_deref(), Some("one chain makes one mask: only one 'colour' can be in it"));
+        let two_ways = error(&[stage("colour", &[]), stage("sobel", &[])]);
+        assert_eq!(two_ways.help.as_deref(), Some("one chain makes one mask: leave out 'colour' or 'sobel'"));
         let first = error(&[stage("horizon", &[]), stage("sobel", &[])]);
         assert_eq!(first.message, "filter 'horizon' reads a mask, not colour");
         let help = "put one before it that writes a mask: colour, floor, scharr, sobel, threshold";

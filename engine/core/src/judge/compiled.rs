@@ -5,6 +5,7 @@ use super::memory::Remembered;
 use super::needs::Needs;
 use super::readings::Part;
 use super::rule::CompiledRule;
+use super::stopped::StopPlaces;
 use crate::diagnostic::{Mistakes, Result, SourceText};
 use rhai::{AST, Dynamic, Engine, Position, Scope};
 use std::ops::Range;
@@ -33,6 +34,8 @@ pub(crate) struct CompiledScript {
     pub reward_parts: Vec<Part>,
     /// Where the name of `fn calibrate` stands, if there is one.
     pub calibrate: Option<Range<usize>>,
+    /// Where a limit can stop it.
+    pub stops: StopPlaces,
 }
 
 impl CompiledScript {

@@ -11,7 +11,7 @@ use super::running;
 use super::views::{AllFacts, number, view};
 use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
 use crate::outcome::Then;
-use rhai::{CallFnOptions, Dynamic, Map, Scope};
+use rhai::{CallFnOptions, Dynamic, EvalAltResult, Map, Scope};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -102,7 +102,13 @@ impl Present {
             }
         }
         let result = compiled.engine.eval_ast_with_scope::<Dynamic>(&mut scope, &script.ast);
-        result.map_err(|error| Box::new(running::explain(&compiled.source, &error)))
+        result.map_err(|error| self.told(error))
+    }
+
+    fn told(&self, mut error: Box<EvalAltResult>) -> Box<Diagnostic> {
+        let source = &self.compiled.source;
+        self.compiled.stops.move_into_called(&mut error, source);
+        Box::new(running::explain(source, &error))
     }
 
     fn calibration(&self) -> Arc<Dynamic> {
@@ -143,9 +149,10 @@ impl Present {
         let compiled = &*self.compiled;
         let options = CallFnOptions::new().eval_ast(false).rewind_scope(true);
         let arguments = (self.all(),);
-        let result =
-            compiled.engine.call_fn_with_options(options, &mut Scope::new(), &compiled.ast, function, arguments);
-        result.map_err(|error| Box::new(running::explain(&compiled.source, &error)))
+        let CompiledScript { engine, ast, .. } = compiled;
+        let result = engine.call_fn_with_options(options, &mut Scope::new(), ast, function, arguments);
+        let placed = |error| compiled.stops.placed_in(error, engine, function, Dynamic::from(self.all()));
+        result.map_err(|error| self.told(placed(error)))
     }
 
     /// What `fn reward` returns; its value may still be infinite.

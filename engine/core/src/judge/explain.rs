@@ -1,7 +1,9 @@
 //! Places in a script, and what is wrong there in plain words: unknown names, limits, kinds of values.
 
 use super::fact_table::{GROUPS, OTHER_NAMES, is_group, names_in};
+use super::withheld::{measured, withheld};
 use crate::diagnostic::{Diagnostic, SourceText, nearest_name, printable};
+use crate::settings::{SETTINGS, Settings};
 use rhai::Position;
 
 /// The byte offset of a position; the end if it has none.
@@ -41,28 +43,78 @@ pub(crate) fn unknown_name(source: &SourceText, position: Position, name: &str, 
 
 /// A variable that does not exist, with the nearest that does.
 pub(crate) fn unknown_name_at(source: &SourceText, at: usize, name: &str, own_names: &[String]) -> Diagnostic {
+    let own = nearest_name(name, own_names.iter().map(String::as_str));
+    // A single letter is more often a variable that is not defined yet.
+    if let Some(help) = withheld(name).filter(|_| own.is_none() && name.len() > 1) {
+        return only_the_simulator_knows(source, at, name, help);
+    }
     let message = format!("there is nothing called '{}'", printable(name));
     let known = GROUPS.iter().map(|(group, _)| *group).chain(["facts", "calibrated"]);
     let diagnostic = mistake_at(source, "E-SCRIPT-NAME", at, message, "not known");
-    let near = nearest_name(name, own_names.iter().map(String::as_str).chain(known));
     let fact = GROUPS.iter().map(|(group, _)| *group).find(|group| names_in(group).contains(&name));
-    match (near, fact) {
-        (Some(near), _) => diagnostic.help(format!("did you mean '{near}'?")),
-        (None, Some(group)) => diagnostic.help(format!("did you mean '{group}.{name}'?")),
-        (None, None) => diagnostic.help(format!("define it first: let {} = ...;", printable(name))),
+    let fact = fact.map(|group| format!("{group}.{name}")).or_else(|| measured(name).map(str::to_owned));
+    let near = own.or_else(|| nearest_name(name, known)).map(str::to_owned).or(fact);
+    let truth = matches!(name, "True" | "False" | "TRUE" | "FALSE").then(|| name.to_lowercase());
+    match truth.or(near) {
+        Some(near) => diagnostic.help(format!("did you mean '{near}'?")),
+        None => diagnostic.help(format!("define it first: let {} = ...;", printable(name))),
     }
+}
+
+/// A word for what a script is not told, with what there is instead.
+fn only_the_simulator_knows(source: &SourceText, at: usize, name: &str, help: String) -> Diagnostic {
+    let message = format!("only the simulator knows '{}': a script sees what the robot measures", printable(name));
+    mistake_at(source, "E-SCRIPT-TRUTH", at, message, "not to be had").help(help)
+}
+
+/// Facts of a function's argument that do not exist, at a position.
+pub(crate) fn unknown_group(source: &SourceText, position: Position, name: &str) -> Diagnostic {
+    if let Some(help) = withheld(name) {
+        return only_the_simulator_knows(source, offset(source, position), name, help);
+    }
+    let groups: Vec<_> = GROUPS.iter().map(|row| row.0).collect();
+    let owner = groups.iter().find(|group| names_in(group).contains(&name));
+    let fact = owner.map(|owner| format!("{owner}.{name}")).or_else(|| measured(name).map(str::to_owned));
+    let near = nearest_name(name, groups.iter().copied()).map(str::to_owned).or(fact);
+    let help = match near {
+        Some(near) => format!("did you mean '{near}'?"),
+        None => format!("there are: {}", groups.join(", ")),
+    };
+    let message = format!("there are no facts called '{}'", printable(name));
+    mistake(source, "E-SCRIPT-FACT", position, message, "not known").help(help)
 }
 
 /// A fact that does not exist, with the nearest that does.
 pub(crate) fn unknown_fact(source: &SourceText, position: Position, group: &str, key: &str) -> Diagnostic {
     let names = names_in(group);
+    let near = nearest_name(key, names.iter().copied());
+    if let (Some(help), None, false) = (withheld(key), near, matches!(group, "laser" | "camera")) {
+        return only_the_simulator_knows(source, offset(source, position), key, help);
+    }
     let other = OTHER_NAMES.iter().find(|(wrong, right)| *wrong == key && names.contains(right)).map(|row| row.1);
+    let setting = setting_of(group, key);
+    if let Some((key, default)) = setting.as_ref().filter(|_| near.or(other).is_none()) {
+        let message = format!("'{group}.{key}' is a setting: a rule cannot read it");
+        let help = format!("write its value: {default}, unless {group}(#{{ {key}: ... }}) says otherwise");
+        return mistake(source, "E-SCRIPT-FACT", position, message, "not a fact").help(help);
+    }
     let message = format!("'{group}' has no fact '{}'", printable(key));
     let diagnostic = mistake(source, "E-SCRIPT-FACT", position, message, "not known");
-    match nearest_name(key, names.iter().copied()).or(other) {
-        Some(near) => diagnostic.help(format!("did you mean '{near}'?")),
-        None => diagnostic.help(format!("it has: {}", names.join(", "))),
+    match (near.or(other), setting) {
+        (Some(near), Some((key, default))) => diagnostic.help(format!(
+            "did you mean '{near}'? '{group}.{key}' is a setting, which a rule cannot read: write its value, {default} by default"
+        )),
+        (Some(near), None) => diagnostic.help(format!("did you mean '{near}'?")),
+        (None, _) => diagnostic.help(format!("it has: {}", names.join(", "))),
     }
+}
+
+/// The setting that a word after the name of a group stands for, with its default: `max` and `max_range` for `max_range_m`.
+fn setting_of(group: &str, word: &str) -> Option<(&'static str, String)> {
+    let of_group = || SETTINGS.iter().filter(|row| row.group == group);
+    let begins = |key: &str| key.strip_prefix(word).is_some_and(|rest| rest.starts_with('_'));
+    let row = of_group().find(|row| row.key == word).or_else(|| of_group().find(|row| begins(row.key)))?;
+    Some((row.key, (row.get)(&Settings::default()).to_string()))
 }
 
 /// A limit that stopped a script.

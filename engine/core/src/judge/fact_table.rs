@@ -69,7 +69,7 @@ facts! {
     LaserNearest: laser "nearest", Metres, Laser, Nearest, Number(|f| decimal(least(&f.ranges_m))), "The least range of all beams.";
     LaserFarthest: laser "farthest", Metres, Laser, Farthest, Number(|f| decimal(greatest(&f.ranges_m))), "The greatest range of all beams.";
     LaserRight: laser "right", Metres, Laser, Right, Number(|f| f.beam_m(0)), "The range of beam 0, square to the right.";
-    LaserFront: laser "front", Metres, Laser, Front, Number(|f| f.beam_m(f.ranges_m.len() / 2)), "The range of the middle beam, ahead.";
+    LaserFront: laser "front", Metres, Laser, Front, Number(|f| f.beam_m(f.front_beam())), "The range of the middle beam, ahead; of two the lesser.";
     LaserLeft: laser "left", Metres, Laser, Left, Number(|f| f.beam_m(f.ranges_m.len().saturating_sub(1))), "The range of the last beam, square to the left.";
     LaserNearestBeam: laser "nearest_beam", Unit::Beam, Beams, Nearest, Whole(|f| f.nearest_beam() as i64), "The number of the beam with the least range.";
     LaserBeams: laser "beams", Unit::Beams, Beams, NoBeam, Whole(|f| f.ranges_m.len() as i64), "How many beams there are.";
@@ -232,5 +232,18 @@ mod tests {
             _ => panic!(),
         };
         assert_eq!((read("right"), read("front"), read("left"), read("beams")), (0.0, 90.0, 180.0, 181.0));
+    }
+
+    #[test]
+    fn the_front_of_an_even_number_of_beams_is_the_lesser_of_the_middle_two() {
+        let front = |ranges_m: &[f32]| {
+            let facts = Facts { ranges_m: ranges_m.to_vec(), ..Facts::default() };
+            let Getter::Number(get) = FactId::LaserFront.fact().get else { panic!() };
+            (get(&facts), facts.front_beam())
+        };
+        assert_eq!(front(&[1.0, 3.0, 2.0, 1.0]), (2.0, 2));
+        assert_eq!(front(&[1.0, 2.0, 3.0, 1.0]), (2.0, 1));
+        assert_eq!(front(&[1.0, 2.0, 2.0, 1.0]), (2.0, 1));
+        assert_eq!(front(&[]), (0.0, 0));
     }
 }

@@ -102,6 +102,16 @@ impl Facts {
         self.ranges_m.get(beam).is_some_and(|range| decimal(*range) < self.laser_range_m.1)
     }
 
+    /// The beam ahead: the middle one; of two middle ones that with the lesser range, the right one of equals.
+    #[must_use]
+    pub(super) fn front_beam(&self) -> usize {
+        let middle = self.ranges_m.len() / 2;
+        match self.ranges_m.len() % 2 {
+            0 if middle > 0 && self.ranges_m[middle - 1] <= self.ranges_m[middle] => middle - 1,
+            _ => middle,
+        }
+    }
+
     /// The beam with the least range, the rightmost of equals.
     #[must_use]
     pub(crate) fn nearest_beam(&self) -> usize {

@@ -21,7 +21,9 @@ pub(crate) mod readings;
 pub(crate) mod rule;
 pub(crate) mod running;
 pub(crate) mod sandbox;
+pub(crate) mod stopped;
 pub(crate) mod views;
+pub(crate) mod withheld;
 
 pub use evaluate::Judgement;
 pub use expression::Comparison;

@@ -128,7 +128,7 @@ impl BeamSought {
         match self {
             Self::Nowhere => None,
             Self::One(beam) => Some(beam),
-            Self::Middle => Some(ranges_m.len() / 2),
+            Self::Middle => Some(inputs.facts.front_beam()),
             Self::Last => Some(last),
             Self::Given(bearing_deg) => Some(inputs.facts.beam_at(bearing_deg)),
             Self::Least(span) => find(span, least),

@@ -1,9 +1,9 @@
 //! Errors while a script ran in plain words, in the user's own line.
 
-use super::explain::{limit, lower, mistake, offset, plain_kind, unknown_fact, unknown_name};
+use super::explain::{limit, mistake, offset, plain_kind, unknown_fact, unknown_name};
 use super::fact_table::names_in;
 use super::functions::FUNCTIONS;
-use super::sandbox;
+use super::stopped::stopped;
 use crate::diagnostic::{Diagnostic, SourceText, printable};
 use rhai::{EvalAltResult, Position};
 
@@ -25,10 +25,16 @@ pub(crate) fn explain(source: &SourceText, error: &EvalAltResult) -> Diagnostic 
         E::ErrorFunctionNotFound(signature, position) => wrong_types(source, *position, signature),
         E::ErrorDotExpr(message, position) => no_part(source, *position, message),
         E::ErrorPropertyNotFound(key, position) => {
-            at("E-SCRIPT-RUN", position, format!("the map has no key '{}'", printable(key)))
+            let key = printable(key);
+            at("E-SCRIPT-RUN", position, format!("the map has no key '{key}'"))
+                .help(format!("ask first whether it is there: map.contains(\"{key}\")"))
         }
         E::ErrorArrayBounds(count, index, position) => {
-            at("E-SCRIPT-RUN", position, format!("the array has {count} values: there is no number {index}"))
+            let help = match count.checked_sub(1) {
+                None => "ask first whether there is any: array.len() > 0".to_owned(),
+                Some(last) => format!("they are counted from 0: 0 to {last}"),
+            };
+            at("E-SCRIPT-RUN", position, format!("the array has {count} values: there is no number {index}")).help(help)
         }
         E::ErrorMismatchDataType(wanted, found, position) => {
             let (wanted, found) = (plain_kind(wanted), plain_kind(found));
@@ -46,12 +52,65 @@ pub(crate) fn explain(source: &SourceText, error: &EvalAltResult) -> Diagnostic 
             position,
             printable(&value.clone().into_string().unwrap_or_else(|kind| format!("stopped with {kind}"))),
         ),
-        E::ErrorArithmetic(message, position) => at("E-SCRIPT-RUN", position, lower(&printable(message))),
+        E::ErrorArithmetic(message, position) => {
+            let (message, help) = arithmetic(message);
+            at("E-SCRIPT-RUN", position, message).help(help)
+        }
         E::ErrorAssignmentToConstant(name, position) => {
             at("E-SCRIPT-SYNTAX", position, format!("'{}' is read-only", printable(name)))
         }
-        other => at("E-SCRIPT-RUN", &other.position(), lower(&printable(&other.to_string()))),
+        other => other_failure(source, other),
     }
+}
+
+/// Kinds of failure that few scripts meet.
+fn other_failure(source: &SourceText, error: &EvalAltResult) -> Diagnostic {
+    use EvalAltResult as E;
+    let at = |code, message: &str| mistake(source, code, error.position(), message, "here");
+    match error {
+        E::ErrorUnboundThis(_) => at("E-SCRIPT-NAME", "'this' stands for nothing here")
+            .help("give the function an argument, and read that: fn reward(facts) { -facts.laser.right }"),
+        E::ErrorStringBounds(count, index, _) => {
+            at("E-SCRIPT-RUN", &format!("the text has {count} characters: there is no number {index}"))
+        }
+        E::ErrorBitFieldBounds(..) => at("E-SCRIPT-NAME", "a number cannot be read with [ ]"),
+        E::ErrorIndexNotFound(index, _) => {
+            at("E-SCRIPT-RUN", &format!("there is no value '{}' in this", printable(&index.to_string())))
+        }
+        E::ErrorNonPureMethodCallOnConstant(name, _) => {
+            let name = name.split(' ').next().unwrap_or_default();
+            let message = format!("'{}' would change what must stay the same", printable(name));
+            at("E-SCRIPT-SYNTAX", &message).help("copy it first: let copy = ...;")
+        }
+        E::ErrorVariableExists(name, _) => {
+            at("E-SCRIPT-SYNTAX", &format!("'{}' is defined twice", printable(name))).help("choose another name")
+        }
+        _ => at("E-SCRIPT-RUN", "the script cannot go on here"),
+    }
+}
+
+/// A calculation that has no result, in plain words, and what to write. The interpreter's words are `What: 1 + 2`.
+fn arithmetic(words: &str) -> (String, String) {
+    let (what, sum) = words.split_once(": ").unwrap_or((words, ""));
+    let by_zero = sum.ends_with(" 0");
+    let (what, help) = match what.to_lowercase() {
+        what if what.contains("division") && what.contains("zero") && by_zero => {
+            let helped = "see that the divisor is never 0: divide by max(1, x)";
+            (
+                if what.contains("modulo") { "there is no remainder of a division by 0" } else { "a division by 0" },
+                helped,
+            )
+        }
+        what if what.contains("overflow") => (
+            "a whole number has grown too large",
+            "calculate with fractions: write one of the numbers as 1.0 or to_float(x)",
+        ),
+        what if what.starts_with("sign of") => ("this number is none (NaN): it has no sign", ""),
+        what if what.contains("step") => ("a range needs steps that are not 0", "write range(0, 10, 1)"),
+        _ => ("this cannot be calculated", "look for a number that is too large, too small or none"),
+    };
+    let message = if sum.is_empty() { what.to_owned() } else { format!("{what}: {}", printable(sum)) };
+    (message, help.to_owned())
 }
 
 fn wrong_types(source: &SourceText, position: Position, signature: &str) -> Diagnostic {
@@ -65,33 +124,6 @@ fn wrong_types(source: &SourceText, position: Position, signature: &str) -> Diag
         Some(row) => diagnostic.help(format!("write {}", row.form)),
         None => diagnostic,
     }
-}
-
-/// What stopped a script, if a limit did, and what to look for.
-fn stopped(error: &EvalAltResult) -> Option<(String, &'static str)> {
-    use EvalAltResult as E;
-    Some(match error {
-        E::ErrorTooManyOperations(_) => (
-            format!("the script was stopped after {} operations", sandbox::MAX_OPERATIONS),
-            "look for a loop that does not end; a step has a handful of operations to spend",
-        ),
-        E::ErrorStackOverflow(_) => (
-            format!("functions call one another too deep: at most {}", sandbox::MAX_CALL_LEVELS),
-            "look for a function that calls itself",
-        ),
-        E::ErrorDataTooLarge(what, _) => {
-            let (what, most) = match what.to_lowercase() {
-                what if what.contains("string") => ("a text", sandbox::MAX_TEXT_BYTES),
-                what if what.contains("map") => ("a map", sandbox::MAX_MAP),
-                _ => ("an array", sandbox::MAX_ARRAY),
-            };
-            (format!("{what} has grown too large: at most {most}"), "look for a loop that makes it longer each time")
-        }
-        E::ErrorTooManyVariables(_) => {
-            (format!("there are too many variables: at most {}", sandbox::MAX_VARIABLES), "look for a `let` in a loop")
-        }
-        _ => return None,
-    })
 }
 
 fn no_part(source: &SourceText, position: Position, message: &str) -> Diagnostic {

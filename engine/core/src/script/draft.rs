@@ -12,7 +12,7 @@ use super::success::FigureNames;
 use super::syntax::{Forms, written_rules};
 use super::tree::{Tree, tree};
 use super::unread::Unread;
-use super::{measures, names, parts, rehearsal, success, syntax, top_level, types};
+use super::{measures, memory, names, parts, rehearsal, stops, success, syntax, top_level, types};
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, printable};
 use crate::judge::compiled::CompiledScript;
 use crate::judge::needs::Needs;
@@ -79,6 +79,7 @@ impl Draft {
         let before = mistakes.count();
         let undefined = names::check_names(code, &tree, &spoilt, &mut needs, mistakes);
         undefined.into_iter().for_each(|name| spoilt.insert(name));
+        memory::check_memory(code, &tree.ast, mistakes);
         types::check_types(code, &tree.ast, mistakes);
         if let Some(refused) = &tree.refused
             && mistakes.count() == before
@@ -118,7 +119,7 @@ impl Draft {
             true => outline_of(code, &tree.ast, &constants, &rules),
             false => ScriptOutline::default(),
         };
-        let (source, ast) = (code.source.clone(), tree.ast);
+        let (source, stops, ast) = (code.source.clone(), stops::stop_places(&tree.ast), tree.ast);
         let reads = |word: &str| code.names(word) && !code.defines(word);
         let (counts_way, looks_back) = (reads("odometry") || reads("stage"), reads("previous"));
         let compiled = CompiledScript {
@@ -135,6 +136,7 @@ impl Draft {
             reward,
             reward_parts,
             calibrate,
+            stops,
         };
         let behaviour = Behaviour::new(name, settings, places, outline, compiled).with_success(success);
         check_with_settings(&behaviour, &mut spoilt, &unread, mistakes)?;

@@ -1,6 +1,6 @@
 //! Every name in a script checked before anything runs: facts, functions, and where a rule may stand.
 
-use super::access::{Access, Link};
+use super::access::{Access, Link, fact_of};
 use super::setup_table::SETUP;
 use super::source::Code;
 use super::spoilt::Spoilt;
@@ -9,7 +9,7 @@ use super::tree::Tree;
 use super::unknown::Unknown;
 use crate::diagnostic::{Diagnostic, Mistakes};
 use crate::judge::explain;
-use crate::judge::fact_table::{self, Fact, GROUPS, is_group, names_in, takes_arguments, value};
+use crate::judge::fact_table::{is_group, takes_arguments};
 use crate::judge::functions::{FUNCTIONS, WINDOWS};
 use crate::judge::needs::Needs;
 use rhai::{AST, ASTNode, Expr, FnCallExpr, Position, Stmt};
@@ -54,6 +54,7 @@ pub(super) fn check_names(
         calibrates,
         figures,
         in_function,
+        unknown_calls: BTreeSet::new(),
         needs,
         unknown,
         mistakes,
@@ -66,8 +67,8 @@ pub(super) fn check_names(
     names.unknown.tell(code, &tree.known.variables, &functions, mistakes)
 }
 
-struct Names<'a> {
-    code: &'a Code,
+pub(super) struct Names<'a> {
+    pub(super) code: &'a Code,
     own: Vec<(String, usize)>,
     /// Names of measures, read as facts are.
     measures: &'a [String],
@@ -79,13 +80,15 @@ struct Names<'a> {
     /// Whether `test` and `untrained` are figures, and not the script's own names.
     figures: bool,
     in_function: bool,
-    needs: &'a mut Needs,
+    /// Where calls stand that do not exist: what they are given is not looked at.
+    pub(super) unknown_calls: BTreeSet<Position>,
+    pub(super) needs: &'a mut Needs,
     unknown: Unknown,
-    mistakes: &'a mut Mistakes,
+    pub(super) mistakes: &'a mut Mistakes,
 }
 
 impl Names<'_> {
-    fn mistake(
+    pub(super) fn mistake(
         &mut self,
         code: &'static str,
         position: Position,
@@ -145,7 +148,7 @@ impl Names<'_> {
                 );
             }
             // It reads other names where it belongs; what a success reads is looked at where it is compiled.
-            _ if misplaced || success => {}
+            _ if misplaced || success || self.is_given_to_unknown(path) => {}
             Some(ASTNode::Stmt(Stmt::Var(variable, ..))) if !self.in_function && path.len() == 1 => {
                 self.defined(&variable.0.name, variable.0.pos);
             }
@@ -157,6 +160,18 @@ impl Names<'_> {
             Some(ASTNode::Expr(expr @ Expr::Variable(..))) => self.variable(expr, in_rule),
             _ => {}
         }
+    }
+
+    fn is_given_to_unknown(&self, path: &[ASTNode<'_>]) -> bool {
+        let above = path.split_last().map_or(path, |(_, above)| above);
+        !self.unknown_calls.is_empty()
+            && above.iter().any(|node| match node {
+                ASTNode::Stmt(Stmt::FnCall(_, position))
+                | ASTNode::Expr(Expr::FnCall(_, position) | Expr::MethodCall(_, position)) => {
+                    self.unknown_calls.contains(position)
+                }
+                _ => false,
+            })
     }
 
     fn defined(&mut self, name: &str, position: Position) {
@@ -230,6 +245,7 @@ impl Names<'_> {
             let message = format!("'{name}' takes {wanted} arguments, found {found}");
             self.mistake("E-SCRIPT-NAME", position, message, "here", "look at its definition");
         } else if !self.spoilt.has(name) {
+            self.unknown_calls.insert(position);
             self.unknown.function(name, explain::offset(&self.code.source, position));
         }
     }
@@ -264,7 +280,7 @@ impl Names<'_> {
         let Some(access) = Access::of(expr) else { return false };
         let all = self.facts_names.iter().any(|name| name == access.root);
         let group = if all { access.group_of_facts() } else { access.group() };
-        group.is_some_and(|(group, _)| is_group(group))
+        group.is_some_and(|(group, links)| is_group(group) && fact_of(group, links).is_some())
     }
 
     /// `1 / 2` is 0 between whole numbers: nobody means that.
@@ -290,6 +306,12 @@ impl Names<'_> {
                 {
                     return self.no_group(group, position);
                 }
+                // As a dictionary is read elsewhere: `params["speed"]`.
+                if let Some(Link::Index(Expr::StringConstant(group, position))) = access.links.first()
+                    && !is_group(group)
+                {
+                    return self.no_group(group, *position);
+                }
                 access.group_of_facts()
             }
             (false, false) if in_rule && !access.is_local => access.group(),
@@ -299,105 +321,6 @@ impl Names<'_> {
             && is_group(group)
         {
             self.group(group, links);
-        }
-    }
-
-    fn no_group(&mut self, name: &str, position: Position) {
-        let groups: Vec<_> = GROUPS.iter().map(|row| row.0).collect();
-        let owner = groups.iter().find(|group| names_in(group).contains(&name));
-        let help = match (crate::diagnostic::nearest_name(name, groups.iter().copied()), owner) {
-            (Some(near), _) => format!("did you mean '{near}'?"),
-            (None, Some(owner)) => format!("did you mean '{owner}.{name}'?"),
-            (None, None) => format!("there are: {}", groups.join(", ")),
-        };
-        self.mistake("E-SCRIPT-FACT", position, format!("there are no facts called '{name}'"), "not known", help);
-    }
-
-    fn group(&mut self, group: &str, links: &[Link<'_>]) {
-        match links {
-            [Link::Property(inner, position), rest @ ..] if group == "previous" => match *inner {
-                "previous" | "stage" => {
-                    let message = format!("'{inner}' has no previous value");
-                    let help = "name it: measure m = ...; change(m) is how much it changed since the step before";
-                    self.mistake("E-SCRIPT-FACT", *position, message, "not known", help);
-                }
-                inner if is_group(inner) => self.group(inner, rest),
-                inner => self.no_group(inner, *position),
-            },
-            [] if group == "previous" => {}
-            [Link::Call(call, position), ..] if group == "stage" && call.name == "at" => self.stage(call, *position),
-            [Link::Index(beam), ..] if group == "laser" => self.beam(beam),
-            [Link::Call(call, position), rest @ ..] => {
-                self.call_of_facts(group, call, *position);
-                if let ("sector" | "between", [next, ..]) = (call.name.as_str(), rest) {
-                    self.sector(next);
-                }
-            }
-            [Link::Property(key, position), ..] if value(group, key).is_none() => self.no_fact(group, key, *position),
-            _ => {}
-        }
-    }
-
-    fn sector(&mut self, link: &Link<'_>) {
-        match link {
-            Link::Property(key, position) if value("sector", key).is_none() => {
-                self.no_fact("sector", key, *position);
-            }
-            Link::Call(call, position) => self.call_of_facts("sector", call, *position),
-            _ => {}
-        }
-    }
-
-    fn no_fact(&mut self, group: &str, key: &str, position: Position) {
-        match fact_table::call(group, key).and_then(Fact::form) {
-            Some((form, _)) => {
-                let message = format!("'{key}' needs arguments");
-                self.mistake("E-SCRIPT-FACT", position, message, "here", format!("write {form}"));
-            }
-            None => self.unknown_fact(group, key, position),
-        }
-    }
-
-    fn unknown_fact(&mut self, group: &str, key: &str, position: Position) {
-        let source = &self.code.source;
-        if self.mistakes.wants(source, explain::offset(source, position)) {
-            self.mistakes.add(explain::unknown_fact(source, position, group, key));
-        }
-    }
-
-    fn call_of_facts(&mut self, group: &str, call: &FnCallExpr, position: Position) {
-        let name = call.name.as_str();
-        match fact_table::call(group, name).and_then(Fact::form) {
-            None if value(group, name).is_some() => {
-                let message = format!("'{group}.{name}' is a value, not a function");
-                self.mistake("E-SCRIPT-FACT", position, message, "here", format!("write {group}.{name}"));
-            }
-            None => self.unknown_fact(group, name, position),
-            Some((form, arguments)) if arguments != call.args.len() => {
-                let message = format!("'{name}' takes {arguments} arguments, found {}", call.args.len());
-                self.mistake("E-SCRIPT-FACT", position, message, "here", format!("write {form}"));
-            }
-            Some(_) if name == "sector" => call.args.iter().for_each(|beam| self.beam(beam)),
-            Some(_) if name == "cell" => {
-                if let [Expr::IntegerConstant(row, at), Expr::IntegerConstant(column, _)] = call.args.as_slice() {
-                    self.needs.cells.push((*row, *column, *at));
-                }
-            }
-            Some(_) => {}
-        }
-    }
-
-    fn stage(&mut self, call: &FnCallExpr, position: Position) {
-        let [Expr::StringConstant(name, at)] = call.args.as_slice() else {
-            let message = "'at' needs the name of a stage".to_owned();
-            return self.mistake("E-SCRIPT-STAGE", position, message, "here", "write stage.at(\"name\")");
-        };
-        self.needs.stages.push((name.to_string(), *at));
-    }
-
-    fn beam(&mut self, beam: &Expr) {
-        if let Expr::IntegerConstant(number, position) = beam {
-            self.needs.beams.push((*number, *position));
         }
     }
 }

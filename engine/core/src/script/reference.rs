@@ -15,6 +15,7 @@ use std::fmt::Write;
 pub fn reference() -> String {
     include_str!("reference.md")
         .replace("{{SETUP}}", &setup())
+        .replace("{{ACTIONS}}", &actions())
         .replace("{{SETTINGS}}", &settings())
         .replace("{{FIGURES}}", &figures())
         .replace("{{FACTS}}", &facts())
@@ -33,6 +34,13 @@ fn table(heads: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String 
 
 fn setup() -> String {
     table(&["call", "what it sets"], SETUP.iter().map(|row| vec![format!("`{}`", row.form), row.purpose.to_owned()]))
+}
+
+/// The actions of a script that names none, by their numbers.
+fn actions() -> String {
+    let own = Settings::default().actions;
+    let words = own.iter().map(|action| format!("`[{}, {}]`", action.linear_m_per_s, action.angular_rad_per_s));
+    words.collect::<Vec<_>>().join(" ")
 }
 
 fn settings() -> String {

@@ -2,8 +2,9 @@
 
 use super::setup_table::SETUP;
 use super::syntax::OURS;
+use super::words::foreign_word;
 use crate::diagnostic::{Diagnostic, SourceText, nearest_name, printable};
-use crate::judge::explain::{limit, lower, mistake, mistake_at, unknown_name};
+use crate::judge::explain::{limit, lower, mistake, mistake_at, offset, unknown_name};
 use crate::judge::functions::FUNCTIONS;
 use crate::judge::sandbox;
 use rhai::{LexError, ParseError, ParseErrorType};
@@ -11,6 +12,10 @@ use rhai::{LexError, ParseError, ParseErrorType};
 /// An error of the parser.
 pub(super) fn syntax(source: &SourceText, error: &ParseError, own_names: &[String]) -> Diagnostic {
     let ParseError(kind, position) = error;
+    let limited = most_of(kind).is_some() || matches!(**kind, ParseErrorType::VariableUndefined(_));
+    if let Some(wrong) = foreign_word(source, offset(source, *position)).filter(|_| !limited) {
+        return wrong;
+    }
     let at = |message: String, label: &str| mistake(source, "E-SCRIPT-SYNTAX", *position, message, label);
     match &**kind {
         ParseErrorType::BadInput(LexError::ImproperSymbol(mark, message)) if mark == OURS => {

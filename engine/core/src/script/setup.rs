@@ -217,10 +217,13 @@ impl SetupReader<'_> {
         };
         for (key, value) in map {
             let (at_key, at_value) = self.entry(&key);
+            let known = settings::SETTINGS.iter().any(|row| row.group == group && row.key == key.as_str());
             let value = match (number(&value), value.as_bool(), value.clone().into_string()) {
                 (Some(number), ..) => Value::Number(number),
                 (_, Ok(flag), _) => Value::Flag(flag),
                 (.., Ok(text)) => Value::Text(text),
+                // Whatever its value is: the key is what is wrong.
+                _ if !known => Value::Flag(false),
                 _ => {
                     let message = format!("'{}' must be one value", printable(&key));
                     let wrong = self.wrong(at_value, message, "found something else", form);
@@ -228,7 +231,6 @@ impl SetupReader<'_> {
                     continue;
                 }
             };
-            let known = settings::SETTINGS.iter().any(|row| row.group == group && row.key == key.as_str());
             self.set_or_tell(group, &key, &value, if known { at_value } else { at_key });
         }
         Ok(())

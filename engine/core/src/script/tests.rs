@@ -4,9 +4,12 @@ mod errors;
 mod memory;
 mod mistakes;
 mod pages;
+mod remembered;
+mod running;
 mod same;
 mod success;
 mod types;
+mod words;
 
 use super::*;
 use crate::diagnostic::{Diagnostic, SourceText};

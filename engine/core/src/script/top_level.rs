@@ -3,6 +3,7 @@
 use super::setup::Log;
 use super::source::Code;
 use super::spoilt::Spoilt;
+use super::stops::stop_places;
 use super::tree::Tree;
 use crate::diagnostic::{Diagnostic, Kind, MOST_MISTAKES, Mistakes};
 use crate::judge::explain::offset;
@@ -26,7 +27,7 @@ pub(super) fn run(
     if mistakes.is_empty() {
         match engine.run_ast_with_scope(&mut scope, &tree.ast) {
             Ok(()) => return Ok(scope),
-            Err(error) => add(code, &error, log, mistakes)?,
+            Err(mut error) => add(code, &tree.ast, &mut error, log, mistakes)?,
         }
     }
     let mut failed = BTreeSet::new();
@@ -42,8 +43,8 @@ pub(super) fn run(
         let ast = AST::new(statements.collect::<Vec<_>>(), tree.ast.shared_lib().clone());
         log.clear();
         scope.clear();
-        let Err(error) = engine.run_ast_with_scope(&mut scope, &ast) else { return Ok(scope) };
-        add(code, &error, log, mistakes)?;
+        let Err(mut error) = engine.run_ast_with_scope(&mut scope, &ast) else { return Ok(scope) };
+        add(code, &tree.ast, &mut error, log, mistakes)?;
         // Where it was called from the top level, not where in a function it failed.
         let number = spoilt.statement_at(offset(&code.source, error.position()));
         if !number.is_some_and(|number| failed.insert(number)) {
@@ -53,7 +54,14 @@ pub(super) fn run(
     Ok(scope)
 }
 
-fn add(code: &Code, error: &EvalAltResult, log: &Log, mistakes: &mut Mistakes) -> Result<(), Diagnostic> {
+fn add(
+    code: &Code,
+    ast: &AST,
+    error: &mut EvalAltResult,
+    log: &Log,
+    mistakes: &mut Mistakes,
+) -> Result<(), Diagnostic> {
+    stop_places(ast).move_into_called(error, &code.source);
     let wrong = running::explain(&code.source, error);
     if wrong.kind() == Kind::Limit || log.is_full() {
         return Err(wrong);

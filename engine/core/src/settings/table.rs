@@ -249,9 +249,14 @@ fn unknown(group: &str, key: &str) -> SettingError {
     let shown = crate::diagnostic::printable(key);
     if rows.is_empty() {
         let groups = SETTINGS.iter().map(|row| row.group);
-        let near = nearest_name(group, groups).map(|near| format!("did you mean '{near}.{key}'?"));
+        let near = nearest_name(group, groups.clone()).map(|near| format!("did you mean '{near}.{key}'?"));
+        let help = near.unwrap_or_else(|| {
+            let mut groups: Vec<_> = groups.collect();
+            groups.dedup();
+            format!("the groups are: {}", groups.join(", "))
+        });
         let message = format!("there is no group of settings '{}'", crate::diagnostic::printable(group));
-        return SettingError { message, found: "not known".to_owned(), help: near };
+        return SettingError { message, found: "not known".to_owned(), help: Some(help) };
     }
     // `height_cm` and `height` both mean `height_m`: the stem is right, the unit is not.
     let stem = |name: &str| name.rsplit_once('_').map_or(name.to_owned(), |(stem, _)| stem.to_owned());

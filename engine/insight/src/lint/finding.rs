@@ -56,7 +56,6 @@ impl Finding {
     #[must_use]
     pub fn diagnostic(&self, plan: &Plan) -> Diagnostic {
         let diagnostic = Diagnostic::new(self.code, self.message.clone());
-        let diagnostic = diagnostic.at(plan.behaviour.source(), self.span.clone(), self.label.clone());
-        if self.help.is_empty() { diagnostic } else { diagnostic.help(self.help.clone()) }
+        diagnostic.at(plan.behaviour.source(), self.span.clone(), self.label.clone()).help(self.help.clone())
     }
 }

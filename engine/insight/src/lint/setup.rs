@@ -27,6 +27,19 @@ pub(super) fn check_setup(plan: &Plan, findings: &mut Vec<Finding>) {
         );
     }
     same_actions(plan, findings);
+    blind_starts(plan, findings);
+}
+
+/// Filters that see nothing where every attempt begins.
+fn blind_starts(plan: &Plan, findings: &mut Vec<Finding>) {
+    let last = plan.settings.filters.len().saturating_sub(1);
+    let Some(span) = plan.behaviour.place_of(&format!("filter:{last}")) else { return };
+    if plan.sees_at_the_starts().unwrap_or(true) {
+        return;
+    }
+    let message = "the filters see nothing from any start: what they look for comes into sight only on the way";
+    let help = "if that is not meant, check the filter's parameters and the camera's tilt, or add a start that sees it";
+    findings.push(Finding::warning(plan, "W-FILTER-BLIND", span, message).say("sees nothing at the starts", help));
 }
 
 /// Why a setting has no effect, and what to do about it.

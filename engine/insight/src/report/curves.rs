@@ -60,5 +60,10 @@ pub fn compared_curves(title: &str, window_steps: u64, groups: &[CurveGroup<'_>]
     let entries: Vec<LegendEntry<'_>> =
         groups.iter().zip(&signs).map(|(group, sign)| LegendEntry { sign: &**sign, words: group.name }).collect();
     legend(&mut sheet, spot(END_PX, BELOW_TITLE_PX + 4.0), &entries);
-    sheet.finish()
+    let names: Vec<&str> = groups.iter().map(|group| group.name).collect();
+    let shows = format!(
+        "The sum of the rewards of every {window_steps} steps, median and quartiles of the seeds of {}.",
+        names.join(", ")
+    );
+    sheet.finish(&shows)
 }

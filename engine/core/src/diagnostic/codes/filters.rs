@@ -13,7 +13,8 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
     (
         "E-FILTER-BLIND",
         Kind::Input,
-        "The filters leave no pixel of any image, wherever the robot looks from its starts and its route.\n\
+        "The filters leave no pixel of any image: not where the robot looks round from its starts and its route, nor in a few thousand \
+      steps at random.\n\
       Every state would be the empty one, so nothing can be learned.\n\
       Lower the filter's threshold, look at the colour it searches for, or tilt the camera; engine filter shows what it makes of images.",
     ),

@@ -13,6 +13,14 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
       state cannot tell what to do, look at camera, filter and grid before you change the reward.",
     ),
     (
+        "W-FILTER-BLIND",
+        Kind::Input,
+        "The filters leave no pixel of what the robot sees all round from its starts and along its route; something came into sight \
+         only while it drove about.\n\
+         Until then every state is the empty one, and all that can be learned is to search. If that is not meant, lower the \
+         filter's threshold, look at the colour it searches for, tilt the camera, or add a start from which it sees something.",
+    ),
+    (
         "W-GOAL-CONTACT",
         Kind::Input,
         "A rule ends the attempt with something good when the body touches something or falls.\n\

@@ -53,6 +53,15 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          something.",
     ),
     (
+        "E-SCRIPT-MEMORY",
+        Kind::Input,
+        "A function changes a variable that stands outside of it, or writes to 'this'. Such a variable is the same in every step: \
+         variables remember nothing, so that each step can be judged again by itself.\n\
+         What must outlast a step is said by a time (for 6 seconds), by fired(\"rule\") and since(\"rule\"), by change(x, 10) and \
+         average(x, 2), by a measure with a name, or by stages. What is needed within one step only, define in the function with \
+         'let'.",
+    ),
+    (
         "E-SCRIPT-NAME",
         Kind::Input,
         "The script uses a name or a function that is not there, or with the wrong kind of value.\n\
@@ -117,6 +126,13 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          ';'.",
     ),
     (
+        "E-SCRIPT-TRUTH",
+        Kind::Input,
+        "The script asks for what only the simulator knows: where the robot is, how far along its route, where its goal lies.\n\
+         A robot does not have that, and a reward that reads it cannot be learned on one. Scripts see what the robot measures \
+         (scripts/README.md, Facts); laps and places are judged by the test: success \"drives round\" when test.laps > 3;",
+    ),
+    (
         "E-SCRIPT-TYPE",
         Kind::Input,
         "A truth value stands where a number belongs, or a number where something true or false belongs.\n\
@@ -130,6 +146,12 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          change, average, fired and since stand in rules and measures, over facts, numbers and the functions of the table; in a \
          function they have no memory. Name what you need outside of it: measure progress = change(odometry.forward_m, 10); and \
          read facts.progress in the function.",
+    ),
+    (
+        "E-SCRIPT-WORD",
+        Kind::Input,
+        "A word of another language stands where it means nothing: 'and' is written &&, 'or' ||, 'not' !; numbers have no units, \
+         0.25 is metres; how an attempt ends stands at the end of a rule, after 'then'.",
     ),
     (
         "E-SET",

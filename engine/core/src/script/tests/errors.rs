@@ -102,6 +102,8 @@ fn names_are_unique() {
 fn a_wrong_setting_is_shown_at_its_key_or_value() {
     expect(&format!("camera(#{{ tilt_deg: 420 }}); {RULE}"), "E-SCRIPT-SETTING", "420", "default");
     expect(&format!("camera(#{{ tilt: 42 }}); {RULE}"), "E-SCRIPT-SETTING", "tilt", "tilt_deg");
+    expect(&format!("camera(#{{ distortion: [-0.3, 0.1] }}); {RULE}"), "E-SCRIPT-SETTING", "distortion", "it has");
+    expect(&format!("camera(#{{ tilt_deg: [42] }}); {RULE}"), "E-SCRIPT-SETTING", "[", "write camera(");
     expect(&format!("camera(42); {RULE}"), "E-SCRIPT-SETTING", "camera", "write camera(");
     expect(&format!("world(); {RULE}"), "E-SCRIPT-SETTING", "world", "world(\"room\")");
     expect(&format!("cammera(#{{ tilt_deg: 42 }}); {RULE}"), "E-SCRIPT-NAME", "cammera", "'camera'");

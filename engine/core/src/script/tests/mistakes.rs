@@ -76,8 +76,8 @@ fn one_cause_is_told_once() {
 rule \"a\" when laser.right > FAR => 1;\nrule \"b\" when laser.right > near => half(1);\nfn reward(facts) { half(1) }";
     expect(text, &[(1, "lasr")]);
     // A definition that is missing is missing once; a slip of the pen is to be mended in each place.
-    expect("rule \"a\" when speed > 1 => 1;\nrule \"b\" when speed > 2 => wave(speed);", &[(1, "speed"), (2, "wave")]);
-    let help = wrong("rule \"a\" when speed > 1 => 1;\nrule \"b\" when speed > 2 => 1;").help.unwrap();
+    expect("rule \"a\" when limit > 1 => 1;\nrule \"b\" when limit > 2 => wave(limit);", &[(1, "limit"), (2, "wave")]);
+    let help = wrong("rule \"a\" when limit > 1 => 1;\nrule \"b\" when limit > 2 => 1;").help.unwrap();
     assert!(help.ends_with("(it stands in line 2 too)"), "{help}");
     expect("rule \"a\" when lasr.right > 1 => 1;\nrule \"b\" when lasr.left > 1 => 1;", &[(1, "lasr"), (2, "lasr")]);
     // A setting that could not be read is not relied upon.
@@ -91,6 +91,16 @@ rule \"a\" when laser.right > FAR => 1;\nrule \"b\" when laser.right > near => h
     expect("fn f() { rule \"a\" when laser.right > 1 => 1; }\nfn reward(facts) { 1 }", &[(1, "rule")]);
     expect("fn calibrate(facts) { \"x\" }\nrule \"a\" when laser.right > calibrated.a => 1;", &[(1, "calibrate")]);
     expect("wrold(\"small\");", &[(1, "wrold")]);
+}
+
+#[test]
+fn what_an_unknown_call_is_given_is_not_looked_at() {
+    expect("rule \"a\" when camera.colour(laser.lft) == \"red\" => 1;", &[(1, "colour")]);
+    expect(&format!("state([laser.left, laser.front]); {RULE}"), &[(1, "state")]);
+    expect("rule \"a\" when wave(laser.rigth, laser[999]) > 1 => 1;", &[(1, "wave")]);
+    expect("fn reward(facts) { facts.laser.mode(nothing, 1 / 2) }", &[(1, "mode")]);
+    // What stands beside it is.
+    expect("rule \"a\" when wave(1) > laser.rigth => 1;", &[(1, "wave"), (1, "rigth")]);
 }
 
 #[test]

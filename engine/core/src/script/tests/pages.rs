@@ -22,6 +22,15 @@ fn the_page_about_scripts_is_the_generated_one() {
 }
 
 #[test]
+fn the_page_has_the_actions_of_a_script_that_names_none() {
+    let page = reference();
+    let own = crate::settings::Settings::default().actions;
+    let written =
+        |action: &crate::geometry::Twist| format!("`[{}, {}]`", action.linear_m_per_s, action.angular_rad_per_s);
+    assert!(own.len() == 14 && own.iter().all(|action| page.contains(&written(action))));
+}
+
+#[test]
 fn every_script_loads() {
     for name in ["wall", "corridor", "platform", "object", "avoid", "follow-and-avoid"] {
         let behaviour =

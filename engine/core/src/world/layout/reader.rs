@@ -294,7 +294,11 @@ impl FileReader<'_> {
             return self.wrong(key, value, format!("found {}", shown(value.get_ref()))).fail();
         };
         if !count.contains(&array.len()) {
-            return self.wrong(key, value, format!("found {} numbers", array.len())).fail();
+            let help = match (key.name, count.start()) {
+                ("size_m", 3) => "a solid needs [length, width, height], such as [4.0, 4.0, 0.5]",
+                _ => "",
+            };
+            return self.wrong(key, value, format!("found {} numbers", array.len())).help(help).fail();
         }
         array.iter().map(|number| self.number(key, number, &allowed)).collect()
     }
@@ -312,8 +316,8 @@ impl FileReader<'_> {
             let here = [pair[0], pair[1]];
             let (x, y) = points.last().map_or((f64::MAX, 0.0), |(last, _)| (here[0] - last[0], here[1] - last[1]));
             if x.abs().max(y.abs()) < 1e-6 {
-                return self
-                    .wrong(key, point, "the same point as the one before")
+                return Diagnostic::new("E-WORLD-VALUE", format!("two points of '{}' are the same", key.name))
+                    .at(self.source, point.span(), "the same point as the one before")
                     .help("delete one of the two: a segment needs a length")
                     .fail();
             }

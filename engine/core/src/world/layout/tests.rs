@@ -123,6 +123,9 @@ fn a_value_out_of_its_range_or_of_the_wrong_kind_is_marked() {
     expect("[[start]]\nposition_m = [0]\n", "E-WORLD-VALUE", "[0]", "2 numbers");
     let text = format!("{START}[[wall]]\npoints_m = [[1, 1], [1, 1.0]]\n");
     expect(&text, "E-WORLD-VALUE", "[1, 1.0]", "the same point as the one before");
+    expect(&text, "E-WORLD-VALUE", "[1, 1.0]", "two points of 'points_m' are the same");
+    let slab = format!("{START}[[platform]]\ncentre_m = [2, 2]\nsize_m = [4, 4]\n");
+    expect(&slab, "E-WORLD-VALUE", "[4, 4]", "a solid needs [length, width, height]");
     let text = format!("{START}[[wall]]\npoints_m = [[1, 1]]\n");
     expect(&text, "E-WORLD-VALUE", "[[1, 1]]", "found 1 point");
     let texture = "[[material]]\nname = \"a\"\ncolour = [0, 0, 0]\ntexture = { kind = \"chequer\" }\n";

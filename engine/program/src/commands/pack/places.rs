@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use engine::diagnostic::{Diagnostic, Result};
+use engine::diagnostic::{Diagnostic, Result, printable};
 use pack::{Dependency, Lock, Locked, Pack, Shelf, Signature, TrustStore};
 
 /// The lock of the folder where the user stands.
@@ -132,5 +132,14 @@ pub(super) fn read_text(path: &Path) -> Result<String> {
 /// A public key as it was typed: itself, or the file that holds it.
 pub(super) fn public_key(text: &str) -> Result<String> {
     let path = Path::new(text);
-    if path.is_file() { pack::key_line(&read_text(path)?) } else { pack::key_line(text) }
+    if path.is_file() {
+        return pack::key_line(&read_text(path)?);
+    }
+    // A key begins with RW; whatever looks like a name of a file is one.
+    if !text.starts_with("RW") && (path.extension().is_some() || text.contains('/')) {
+        let message = format!("there is no key file '{}'", printable(text));
+        let help = "give the author's public key: its file, or its line that begins with RW";
+        return Diagnostic::new("E-PACK-KEY", message).help(help).fail();
+    }
+    pack::key_line(text)
 }
