@@ -74,7 +74,7 @@ pub(crate) fn unknown_group(source: &SourceText, position: Position, name: &str)
     }
     let groups: Vec<_> = GROUPS.iter().map(|row| row.0).collect();
     let owner = groups.iter().find(|group| names_in(group).contains(&name));
-    let fact = owner.map(|owner| format!("{owner}.{name}")).or_else(|| measured(name).map(str::to_owned));
+    let fact = measured(name).map(str::to_owned).or_else(|| owner.map(|owner| format!("{owner}.{name}")));
     let near = nearest_name(name, groups.iter().copied()).map(str::to_owned).or(fact);
     let help = match near {
         Some(near) => format!("did you mean '{near}'?"),
@@ -101,6 +101,7 @@ pub(crate) fn unknown_fact(source: &SourceText, position: Position, group: &str,
     let message = format!("'{group}' has no fact '{}'", printable(key));
     let diagnostic = mistake(source, "E-SCRIPT-FACT", position, message, "not known");
     match (near.or(other), setting) {
+        (Some(near), Some((key, _))) if names.contains(&key) => diagnostic.help(format!("did you mean '{near}' or '{key}'?")),
         (Some(near), Some((key, default))) => diagnostic.help(format!(
             "did you mean '{near}'? '{group}.{key}' is a setting, which a rule cannot read: write its value, {default} by default"
         )),

@@ -14,12 +14,12 @@ pub(crate) const WITHHELD: &[Withheld] = &[
     Withheld {
         words: &["progress", "laps", "lap", "route", "waypoints", "closest_waypoints", "track_length", "is_reversed"],
         success: "test.laps > 3",
-        fact: "robot.linear, the speed of the wheels",
+        fact: "odometry.forward_m, the way counted by the wheels",
     },
     Withheld {
         words: &["x", "y", "z", "pose", "position", "location", "heading", "yaw", "orientation", "distance"],
         success: "test.laps > 3",
-        fact: "robot.linear and robot.angular, the speeds of the wheels",
+        fact: "odometry.away_m and odometry.turned_deg, counted by the wheels",
     },
     Withheld {
         words: &["distance_from_center", "distance_from_centre", "is_left_of_center", "track_width", "route_offset"],

@@ -51,7 +51,7 @@ fn what_only_the_simulator_knows_is_answered_with_the_test_and_a_sensor() {
     let truth = |condition: &str, marked: &str, help: &str| {
         expect(&format!("rule \"a\" when {condition} > 1.0 => 1;"), "E-SCRIPT-TRUTH", marked, help);
     };
-    truth("robot.x", "x", "test.laps > 3; the robot measures robot.linear");
+    truth("robot.x", "x", "test.laps > 3; the robot measures odometry.away_m");
     truth("robot.heading", "heading", "judged by the test");
     truth("progress", "progress", "success \"name\" when test.laps > 3");
     truth("goal.distance", "goal", "test.goal_rate > 0.9; the robot measures laser.front");
@@ -76,12 +76,8 @@ fn a_setting_in_a_rule_is_answered_with_its_value() {
     let fact = |condition: &str, marked: &str, help: &str| {
         expect(&format!("rule \"a\" when {condition} => 1;"), "E-SCRIPT-FACT", marked, help);
     };
-    fact("laser.front < laser.max", "max", "write its value, 8.192 by default");
-    fact(
-        "laser.front < laser.max_range_m",
-        "max_range_m",
-        "write its value: 8.192, unless laser(#{ max_range_m: ... })",
-    );
+    fact("laser.front < laser.max", "max", "did you mean 'farthest' or 'max_range_m'?");
+    fact("laser.height_m > 0.3", "height_m", "unless laser(#{ height_m: ... })");
     fact("camera.tilt_deg > 40", "tilt_deg", "write its value: 42");
 }
 
