@@ -54,7 +54,7 @@ fn unix_s<S: Serializer>(time: &SystemTime, serializer: S) -> std::result::Resul
 pub fn runs_under(folder: &Path) -> Result<Vec<ShelvedRun>> {
     let mut runs = Vec::new();
     look(folder, 0, &mut runs)?;
-    runs.sort_by(|a, b| natural(&a.folder).cmp(&natural(&b.folder)));
+    runs.sort_by_key(|run| natural(&run.folder));
     Ok(runs)
 }
 

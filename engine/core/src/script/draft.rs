@@ -19,7 +19,8 @@ use crate::judge::needs::Needs;
 use crate::judge::sandbox;
 use crate::judge::views::register_own;
 use crate::settings::Settings;
-use rhai::{AST, Module, Scope};
+use crate::verdict::SuccessCondition;
+use rhai::{AST, Engine, Module, Scope};
 use std::path::Path;
 
 /// A script as far as it is understood. What a mistake keeps from being understood is not in it.
@@ -92,19 +93,45 @@ impl Draft {
         let SetUp { settings, places, mut unread } = setup::finish(&log, code, &tree.ast, mistakes);
         calls.into_iter().for_each(|call| unread.all_of(call));
         engine.register_global_module(constants_module(&constants).into());
-        let mut script = vocabulary(&tree, &settings);
+        let read = ReadScript { code, tree, engine, constants, settings: &settings, needs };
+        let (compiled, outline, success) = read.compile(&spoilt, mistakes)?;
+        let behaviour = Behaviour::new(name, settings, places, outline, compiled).with_success(success);
+        check_with_settings(&behaviour, &mut spoilt, &unread, mistakes)?;
+        Ok((behaviour, unread))
+    }
+}
+
+/// A script whose top level has run, with all that its rules are compiled from.
+struct ReadScript<'a> {
+    code: &'a Code,
+    tree: Tree,
+    engine: Engine,
+    constants: Scope<'static>,
+    settings: &'a Settings,
+    needs: Needs,
+}
+
+impl ReadScript<'_> {
+    /// Measures, rules, success and functions, in this order: each may name what stands before it.
+    fn compile(
+        self,
+        spoilt: &Spoilt<'_>,
+        mistakes: &mut Mistakes,
+    ) -> std::result::Result<(CompiledScript, ScriptOutline, Vec<SuccessCondition>), Diagnostic> {
+        let Self { code, tree, mut engine, constants, settings, mut needs } = self;
+        let mut script = vocabulary(&tree, settings);
         check_stages(code, &needs, &script.stages, mistakes);
         measures::check_windows(code, &tree.ast, &script.rules, &script.own, mistakes);
         let mut compiler = Compiler { constants: &constants, needs: &mut needs, script: &mut script };
-        measures::measures(code, &tree.ast, &tree.known.variables, &mut compiler, &spoilt, mistakes);
-        let rules = rules(code, &tree.ast, &mut compiler, &spoilt, mistakes);
+        measures::measures(code, &tree.ast, &tree.known.variables, &mut compiler, spoilt, mistakes);
+        let rules = rules(code, &tree.ast, &mut compiler, spoilt, mistakes);
         let reward_name = has_function(&tree.ast, "reward").then_some("reward");
         let names = FigureNames {
             rules: rules.iter().map(|rule| rule.text.name.as_str()).chain(reward_name).collect(),
             stages: settings.stages.iter().map(String::as_str).collect(),
             measures: tree.known.measures.iter().map(String::as_str).collect(),
         };
-        let success = success::conditions(code, &tree.ast, &constants, &names, &spoilt, mistakes);
+        let success = success::conditions(code, &tree.ast, &constants, &names, spoilt, mistakes);
         let function = |name| if has_function(&tree.ast, name) { code.function(name) } else { None };
         let (reward, calibrate) = (function("reward"), function("calibrate"));
         if rules.is_empty() && reward.is_none() && mistakes.is_empty() {
@@ -138,9 +165,7 @@ impl Draft {
             calibrate,
             stops,
         };
-        let behaviour = Behaviour::new(name, settings, places, outline, compiled).with_success(success);
-        check_with_settings(&behaviour, &mut spoilt, &unread, mistakes)?;
-        Ok((behaviour, unread))
+        Ok((compiled, outline, success))
     }
 }
 

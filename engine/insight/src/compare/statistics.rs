@@ -17,7 +17,9 @@ pub(super) fn share_interval(hits: usize, all: usize) -> [f64; 2] {
     let (square, scale) = (Z * Z / n, 1.0 + Z * Z / n);
     let middle = (share + 0.5 * square) / scale;
     let half = Z / scale * (share * (1.0 - share) / n + 0.25 * square / n).sqrt();
-    [(middle - half).max(0.0), (middle + half).min(1.0)]
+    // Exact at the ends, whatever rounding makes of them.
+    let (low, high) = (middle - half, middle + half);
+    [if hits == 0 { 0.0 } else { low }, if hits == all { 1.0 } else { high }]
 }
 
 /// An interval that holds the true median in 95 % of all samples at least, whatever the distribution: from the k-th least to

@@ -1,6 +1,6 @@
 //! Learning curves of several runs over one another.
 
-use super::canvas::Tint;
+use super::canvas::{Spot, Tint};
 use super::curve::{CurveData, END_PX, HEIGHT_PX, WIDTH_PX, frame, quartiles, stroke};
 use super::picture::Picture;
 use super::sheet::{BELOW_TITLE_PX, BLUE, LegendEntry, Sheet, VERMILION, legend, spot};
@@ -46,19 +46,11 @@ pub fn compared_curves(title: &str, window_steps: u64, groups: &[CurveGroup<'_>]
     for (band, ink) in inked() {
         stroke(&mut sheet, band.iter().map(|window| window[1]), place, 3.0, *ink);
     }
-    let level = |from: (i32, i32), to: (i32, i32)| vec![(from.0, (from.1 + to.1) / 2), (to.0, (from.1 + to.1) / 2)];
-    let signs: Vec<Box<dyn Fn(&mut Sheet, (i32, i32), (i32, i32))>> = INKS
-        .iter()
-        .cycle()
-        .take(groups.len())
-        .map(|ink| {
-            let ink = *ink;
-            let sign = move |sheet: &mut Sheet, from, to| sheet.line(level(from, to), 3.0, ink);
-            Box::new(sign) as Box<dyn Fn(&mut Sheet, (i32, i32), (i32, i32))>
-        })
-        .collect();
+    let level = |from: Spot, to: Spot| vec![(from.0, (from.1 + to.1) / 2), (to.0, (from.1 + to.1) / 2)];
+    let sign = |ink: Tint| move |sheet: &mut Sheet, from: Spot, to: Spot| sheet.line(level(from, to), 3.0, ink);
+    let signs: Vec<_> = INKS.iter().cycle().take(groups.len()).map(|ink| sign(*ink)).collect();
     let entries: Vec<LegendEntry<'_>> =
-        groups.iter().zip(&signs).map(|(group, sign)| LegendEntry { sign: &**sign, words: group.name }).collect();
+        groups.iter().zip(&signs).map(|(group, sign)| LegendEntry { sign, words: group.name }).collect();
     legend(&mut sheet, spot(END_PX, BELOW_TITLE_PX + 4.0), &entries);
     let names: Vec<&str> = groups.iter().map(|group| group.name).collect();
     let shows = format!(

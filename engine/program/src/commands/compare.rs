@@ -33,7 +33,7 @@ fn print(console: &mut Console, comparison: &Comparison) -> std::result::Result<
         let interval = side
             .interval
             .map_or(String::new(), |[low, high]| format!(" ({:.0} to {:.0} %)", 100.0 * low, 100.0 * high));
-        console.line(&format!("{name}"))?;
+        console.line(name)?;
         let seeds = if side.seeds == 1 { "seed" } else { "seeds" };
         console.line(&format!(
             "  {:22}{} of {} {seeds}{interval}{}",
