@@ -8,6 +8,7 @@
 //! | [`page`] | a run as one document of data, and the HTML that shows it |
 //! | [`folder`] | a run's folder, written |
 //! | [`compare`] | runs beside one another |
+//! | [`shell`] | pages that are whole in one file and run no script |
 //! | [`shelf`] | the runs that stand under a folder |
 //! | [`record`] | a run as an MCAP file for Foxglove and Rerun |
 //! | [`words`] | numbers as people read them |
@@ -20,6 +21,7 @@ pub mod page;
 pub mod record;
 pub mod report;
 pub mod shelf;
+pub mod shell;
 pub mod store;
 pub mod verdict_words;
 pub mod words;

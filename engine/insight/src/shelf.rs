@@ -28,9 +28,9 @@ pub struct ShelvedRun {
     pub bytes: u64,
     /// The tag that was put on it.
     pub tag: Option<String>,
-    /// The behaviour and the world; null if the run was not finished.
+    /// Name of the behaviour; null if the run was not finished.
     pub behaviour: Option<String>,
-    /// See there.
+    /// Name of its world; null likewise.
     pub world: Option<String>,
     /// How many seeds.
     pub seeds: usize,

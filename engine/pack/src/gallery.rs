@@ -4,11 +4,12 @@
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, html};
 
 use super::author::PICTURE;
 use super::{Evidence, Pack, SeedClaim, Signature, TrustStore};
 use engine::diagnostic::printable;
+use insight::shell::page_without_scripts;
 use insight::words::bounded;
 
 /// The largest picture that is shown, bytes.
@@ -17,7 +18,6 @@ const MAX_PICTURE_BYTES: usize = 4 << 20;
 const CURVE: [f64; 2] = [300.0, 84.0];
 /// The least distance between two numbers beside a curve.
 const LABEL: f64 = 12.0;
-const POLICY: &str = "default-src 'none'; img-src data:; style-src 'unsafe-inline'";
 const STYLE: &str = include_str!("gallery.css");
 
 /// A pack on the page, and what is known about its signature.
@@ -55,30 +55,18 @@ pub fn signature_line(trust: &TrustStore, pack: &Pack, signature: Option<&Signat
 #[must_use]
 pub fn gallery(cards: &[Card<'_>]) -> String {
     let count = cards.len();
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta http-equiv="Content-Security-Policy" content=(POLICY);
-                title { "Behaviour packs" }
-                style { (PreEscaped(STYLE)) }
-            }
-            body {
-                header {
-                    h1 { "Behaviour packs" }
-                    p {
-                        (count) (if count == 1 { " behaviour" } else { " behaviours" })
-                        ", each with the evidence that it carries. Measure one again with "
-                        code { "engine pack verify --replay FILE.pack" } "."
-                    }
-                }
-                main { @for card in cards { (drawn(card)) } }
+    let body = html! {
+        header {
+            h1 { "Behaviour packs" }
+            p {
+                (count) (if count == 1 { " behaviour" } else { " behaviours" })
+                ", each with the evidence that it carries. Measure one again with "
+                code { "engine pack verify --replay FILE.pack" } "."
             }
         }
+        main { @for card in cards { (drawn(card)) } }
     };
-    page.into_string()
+    page_without_scripts("Behaviour packs", STYLE, &body)
 }
 
 fn drawn(card: &Card<'_>) -> Markup {

@@ -75,7 +75,7 @@ pub(crate) enum Number {
     Excess(usize, usize, usize),
     /// 1 for true, 0 for false.
     Truth(Box<Flag>),
-    /// The same of the step before.
+    /// A number of the step before.
     Before(Box<Number>),
     /// What was worked out before the rules: a measure or a window.
     Remembered(usize),
@@ -190,7 +190,7 @@ impl Flag {
 }
 
 impl<'a> StepFacts<'a> {
-    /// The same with the facts of the step before.
+    /// The step before in the place of the present one; what is remembered stays as it is.
     fn before(self) -> Self {
         Self { facts: self.previous, ..self }
     }

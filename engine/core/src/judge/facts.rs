@@ -57,7 +57,7 @@ pub struct StageFacts {
     pub index: usize,
     /// Steps since it was entered.
     pub steps: u64,
-    /// The same in seconds.
+    /// Time since it was entered, seconds.
     pub seconds: f64,
     /// Way since then, counted by the wheels, metres.
     pub distance_m: f64,

@@ -162,13 +162,13 @@ impl Judge {
         }
         self.is_past = true;
         let Self { present, stage, odometry, period_s, .. } = self;
-        let compiled = Arc::clone(&present.compiled);
         let facts = Arc::make_mut(&mut present.facts);
         facts.attempt_s = facts.since_recovery as f64 * *period_s;
-        if !compiled.remembers() {
+        if !present.compiled.remembers() {
             present.memory.age();
             return Ok(());
         }
+        let compiled = Arc::clone(&present.compiled);
         if compiled.counts_way && facts.action != NO_ACTION {
             odometry.advance(Twist::new(facts.linear_m_per_s, facts.angular_rad_per_s), *period_s);
         }

@@ -51,7 +51,7 @@ pub(crate) struct FunctionBody {
 }
 
 impl StopPlaces {
-    /// The same failure at the line where a limit stopped `function` on the facts, which is found by running it again.
+    /// A failure moved to the line where a limit stopped `function` on the facts, which is found by running it again.
     pub(crate) fn placed_in(
         &self,
         error: Box<EvalAltResult>,

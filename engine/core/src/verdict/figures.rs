@@ -57,10 +57,10 @@ pub struct TestFigures {
     pub does_task: Option<bool>,
     /// What each rule did.
     pub rules: Vec<RuleTotal>,
-    /// Changes of the stage that rules made, and of these, changes to the first.
+    /// Changes of the stage that rules made.
     #[serde(default)]
     pub stages: u64,
-    /// See there.
+    /// Of these, changes to the first stage.
     #[serde(default)]
     pub rounds: u64,
     /// In how many attempts each stage was entered.
@@ -187,7 +187,7 @@ pub struct TestFigure {
     /// What it is, in one sentence.
     pub about: &'static str,
     pub(crate) source: Source,
-    /// The same figure of a window of learning, where that is defined.
+    /// Reads the figure of a window of learning, where that is defined.
     pub(crate) window: Option<fn(&WindowCounts<'_>, usize) -> f64>,
 }
 

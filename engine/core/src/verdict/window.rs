@@ -16,9 +16,9 @@ pub struct Window {
     pub endings: Endings,
     /// Steps in which the body touched something.
     pub contacts: u64,
-    /// Changes of the stage that rules made, and of these, changes to the first.
+    /// Changes of the stage that rules made.
     pub stages: u64,
-    /// See there.
+    /// Of these, changes to the first stage.
     pub rounds: u64,
 }
 

@@ -1,44 +1,33 @@
 //! The comparison as one page, whole in one file, without a script.
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, PreEscaped, html};
+
+use crate::shell::page_without_scripts;
 
 use super::{Changes, ComparedFigure, ComparedState, Comparison, FigureSide, StateChoice, StateComparison};
 
-const POLICY: &str = "default-src 'none'; img-src data:; style-src 'unsafe-inline'";
 const STYLE: &str = include_str!("compare.css");
 
 /// The page, as one HTML text.
 #[must_use]
 pub fn compare_page(comparison: &Comparison) -> String {
-    let title = comparison.runs.join(" and ");
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta http-equiv="Content-Security-Policy" content=(POLICY);
-                title { "Compared: " (title) }
-                style { (PreEscaped(STYLE)) }
+    let title = format!("Compared: {}", comparison.runs.join(" and "));
+    let body = html! {
+        main {
+            h1 { (title) }
+            (figures(comparison))
+            @if let Some(curves) = &comparison.curves_svg {
+                section { h2 { "Learning" } figure { (PreEscaped(curves)) } }
             }
-            body {
-                main {
-                    h1 { "Compared: " (title) }
-                    (figures(comparison))
-                    @if let Some(curves) = &comparison.curves_svg {
-                        section { h2 { "Learning" } figure { (PreEscaped(curves)) } }
-                    }
-                    @for (index, changes) in comparison.changes.iter().enumerate() {
-                        (changed(comparison, index + 1, changes))
-                    }
-                    @for (index, states) in comparison.states.iter().enumerate() {
-                        (states_of(comparison, index + 1, states))
-                    }
-                }
+            @for (index, changes) in comparison.changes.iter().enumerate() {
+                (changed(comparison, index + 1, changes))
+            }
+            @for (index, states) in comparison.states.iter().enumerate() {
+                (states_of(comparison, index + 1, states))
             }
         }
     };
-    page.into_string()
+    page_without_scripts(&title, STYLE, &body)
 }
 
 fn figures(comparison: &Comparison) -> Markup {

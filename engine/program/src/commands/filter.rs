@@ -36,7 +36,7 @@ struct SeenImage {
     columns: Vec<usize>,
     /// Share of the image that the filters left.
     coverage: f64,
-    /// The same of each cell, row by row from the top left.
+    /// Share of the pixels of each cell that the filters left, row by row from the top left.
     cells: Vec<f32>,
     /// What the filters left, as a PNG file of the camera's size: 255 and 0.
     mask: String,

@@ -1,4 +1,4 @@
-//! The same bytes on every machine and in every build.
+//! Frames and scans that must come out alike on every machine and in every build.
 
 use super::oracle::{random_pose, random_solids, scene};
 use crate::random::{Random, Stream};
