@@ -56,10 +56,10 @@ pub struct RuleOutline {
     pub time_span: Option<Range<usize>>,
     /// What it says if it ends the attempt.
     pub then: Option<Then>,
-    /// Whether it is judged in some stages only.
-    pub stages: bool,
-    /// Whether it leads to a stage.
-    pub leads_on: bool,
+    /// The stages in which it is judged, a bit for each; nothing for all.
+    pub stages: Option<u32>,
+    /// The stage that it leads to.
+    pub leads_to: Option<usize>,
 }
 
 /// What a loop over the beams of the laser gathers.

@@ -30,8 +30,8 @@ impl OutlineReader<'_> {
                 start..start + tail[..tail.find("=>").unwrap_or(0)].trim_end().len()
             }),
             then: rule.then,
-            stages: rule.stages.is_some(),
-            leads_on: rule.to_stage.is_some(),
+            stages: rule.stages,
+            leads_to: rule.to_stage,
         }
     }
 

@@ -116,7 +116,7 @@ fn spun(plan: &Plan, index: usize, needed: u64, exploits: &Exploits) -> Option<F
     if caught.clone().count() > 0 && caught.clone().all(|exploit| exploit.failures_per_1000 >= CAUGHT) {
         return None;
     }
-    if needed < 2 || rule.stages || spins.is_empty() || !spins.iter().all(escapes) {
+    if needed < 2 || rule.stages.is_some() || spins.is_empty() || !spins.iter().all(escapes) {
         return None;
     }
     let period_s = plan.settings.run.period_s;

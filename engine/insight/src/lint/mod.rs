@@ -14,6 +14,7 @@ mod sarif;
 mod scale;
 mod setup;
 mod shadow;
+mod stages;
 mod trial;
 mod units;
 mod verdict;
@@ -126,6 +127,7 @@ pub fn read(plan: &Plan) -> Vec<Finding> {
     setup::check_setup(plan, &mut findings);
     choice::written(plan, &mut findings);
     outcome::check_goals(plan, &mut findings);
+    stages::check_stages(plan, &mut findings);
     findings
 }
 

@@ -34,7 +34,11 @@ pub(super) fn written(plan: &Plan, findings: &mut Vec<Finding>) {
             findings.push(large(plan, rule.value_span.clone(), &format!("rule \"{name}\""), value));
         } else if all_small && some && value != 0.0 {
             findings.push(small(plan, rule.value_span.clone(), &format!("rule \"{name}\""), value));
-        } else if value == 0.0 && rule.then.is_none() && !rule.leads_on && !outline.remembered.contains(&text.name) {
+        } else if value == 0.0
+            && rule.then.is_none()
+            && rule.leads_to.is_none()
+            && !outline.remembered.contains(&text.name)
+        {
             let message = format!("rule \"{name}\" adds 0 and does not recover: it does nothing");
             let help = "give it a value, such as -1, or take it out";
             findings.push(Finding::warning(plan, "W-UNUSED", rule.value_span.clone(), message).say("no effect", help));

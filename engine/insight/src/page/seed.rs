@@ -110,6 +110,9 @@ pub struct StateRow {
     pub state: usize,
     /// Its cells, `1` for filled, row by row from the top left.
     pub cells: String,
+    /// What it stands for, in words; absent where the cells say it all.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub text: String,
     /// How often it was visited.
     pub visits: u64,
     /// The best action.
@@ -196,10 +199,12 @@ fn states(plan: &Plan, policy: &Policy, with_values: bool) -> Result<Vec<StateRo
     let rounded = |value: f64| (value * 1e4).round() / 1e4;
     let rows = met.into_iter().filter_map(|(state, visits)| {
         let (row, (best, value)) = (policy.rows().get(state)?.as_ref()?, policy.best(state)?);
-        let filled = map.describe(state).cells.map_or_else(Vec::new, |cells| cells.filled);
+        let described = map.describe(state);
+        let filled = described.cells.map_or_else(Vec::new, |cells| cells.filled);
+        let text = if plan.settings.stages.is_empty() { String::new() } else { described.text };
         let cells = filled.iter().map(|filled| if *filled { '1' } else { '0' }).collect();
         let values = if with_values { row.values.iter().copied().map(rounded).collect() } else { Vec::new() };
-        Some(StateRow { state, cells, visits, best, value: rounded(value), values })
+        Some(StateRow { state, cells, text, visits, best, value: rounded(value), values })
     });
     Ok(rows.collect())
 }

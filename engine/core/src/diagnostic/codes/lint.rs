@@ -75,6 +75,18 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
       Keep rewards between -1 and 1, or change learner.temperature and learner.temperature_end with them.",
     ),
     (
+        "W-STAGE-DEAD",
+        Kind::Input,
+        "A stage is named and no rule enters it, so the robot is never about it and its rules are never judged.\n\
+         The first stage is entered by itself; every other needs a rule that leads there: then stage \"dock\".",
+    ),
+    (
+        "W-STAGE-END",
+        Kind::Input,
+        "No rule leaves a stage, and no rule ends it with a goal: once there, the robot stays in it until it fails.\n\
+         Let a rule lead on, with then stage and a name, or end the attempt with then goal.",
+    ),
+    (
         "W-SUCCESS-IDLE",
         Kind::Input,
         "A robot that knows nothing, or one that does not look, meets every condition of the script's success.\n\

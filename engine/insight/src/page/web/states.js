@@ -51,13 +51,15 @@ class States {
       const action = doc.actions[row.best];
       const next = [...row.values.keys()].filter((at) => at !== row.best).sort((a, b) => row.values[b] - row.values[a]).slice(0, 2)
         .map((at) => `\nnext best: ${motion(doc.actions[at])}, value ${short(row.values[at])}`).join('');
-      const title = `state ${row.state}: ${motion(action)}, value ${short(row.value)}, met ${whole(row.visits)} times${row.visits < FEW_VISITS ? ', too seldom to be sure' : ''}${next}`
+      const title = `state ${row.state}${row.text ? ` (${row.text})` : ''}: ${motion(action)}, value ${short(row.value)}, met ${whole(row.visits)} times${row.visits < FEW_VISITS ? ', too seldom to be sure' : ''}${next}`
         + (differs ? `\nbefore the save: ${motion(doc.actions[last.best])}` : '');
       const button = el('button', {
         type: 'button', title, class: `state${differs ? ' changed' : ''}${row.visits < FEW_VISITS ? ' rare' : ''}`,
         onclick: () => this.onPick(row.state),
       }, stateIcon(doc, row, last),
       el('span', { class: 'number', text: `no. ${row.state}` }),
+      // The last part is the stage.
+      ...(row.text ? [el('span', { class: 'stage', text: row.text.split(' | ').pop().replace('stage ', '').replaceAll('"', '') })] : []),
       el('span', { text: row.value.toFixed(2).replace('-', '−') }),
       el('span', { text: `${whole(row.visits)} ×` }));
       this.buttons.set(row.state, button);
