@@ -17,6 +17,7 @@ mod noise;
 mod painting;
 #[cfg(feature = "photographs")]
 mod photograph;
+mod rays;
 mod spans;
 mod stretches;
 mod surface;
@@ -31,5 +32,6 @@ pub use camera::Camera;
 pub use laser::Laser;
 #[cfg(feature = "photographs")]
 pub use photograph::{load_photograph, photograph_files};
+pub use rays::CameraRays;
 pub use watch::CameraWatch;
 pub(crate) use watch::self_test;

@@ -6,12 +6,16 @@
 mod composed;
 mod grid;
 mod grid_map;
+mod line;
+mod patch;
 
 use crate::sensors::observation::Image;
 
 pub use composed::{ComposedMap, StatePart};
 pub use grid::{Grid, GridError, MAX_STATES};
 pub use grid_map::GridMap;
+pub use line::{FloorLine, floor_line};
+pub use patch::{Patch, PatchFinder};
 
 /// What a state map may look at: the last image, what the filters left of it, and how that lies in the grid.
 #[derive(Debug, Clone, Copy)]
