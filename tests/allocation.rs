@@ -84,6 +84,6 @@ fn more_steps_through_scharr_allocate_nothing_more() {
     let text = std::fs::read_to_string(&path).unwrap().replace("\"sobel\"", "\"scharr\"");
     let behaviour = Behaviour::parse("wall", SourceText::new(path, text)).unwrap();
     let plan = Plan::new(Arc::new(behaviour), &Overrides::default()).unwrap();
-    assert_eq!(plan.settings.filters[0].name, "scharr");
+    assert_eq!(plan.settings.view.filters[0].name, "scharr");
     assert_eq!(allocations(&plan, 5_000), allocations(&plan, 1_000));
 }

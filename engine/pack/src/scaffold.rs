@@ -86,7 +86,8 @@ fn own(path: &str) -> Result<EntryPath> {
 /// The filters of a script that are not part of the engine, and that the pack asks for them.
 fn collect_filters(plan: &Plan, files: &mut Files) -> Result<Capabilities> {
     let mut capabilities = Capabilities::default();
-    let names: BTreeSet<&str> = plan.settings.filters.iter().map(|filter| filter.name.as_str()).collect();
+    let names: BTreeSet<&str> =
+        plan.settings.views().flat_map(|view| &view.filters).map(|filter| filter.name.as_str()).collect();
     for name in names {
         let entry = plan.filters.find(name)?;
         let Some(path) = &entry.path else { continue };

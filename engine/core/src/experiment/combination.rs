@@ -40,7 +40,7 @@ impl Member {
             .map_err(|error| wrong(&error.error.message))?;
         let grid = Grid::new(&self.grid, width_px, height_px).map_err(|error| wrong(&error.0))?;
         let map = Box::new(GridMap::new(&self.grid, grid.clone()));
-        Ok(Eyes::new(chain, grid, map))
+        Ok(Eyes::new(vec![chain], vec![grid], map, &plan.settings))
     }
 }
 

@@ -51,7 +51,7 @@ impl<R: Robot> Cycle<R> {
     /// # Errors
     /// As [`Cycle::new`].
     pub fn with_map(plan: &Plan, robot: R, map: Box<dyn StateMap>) -> Result<Self> {
-        Self::with_eyes(plan, robot, Eyes { map, ..plan.eyes()? }, Vec::new())
+        Self::with_eyes(plan, robot, plan.eyes()?.with_map(map), Vec::new())
     }
 
     /// A cycle that looks through its own eyes, by which the script judges too, and through those of others: one more state
@@ -59,8 +59,10 @@ impl<R: Robot> Cycle<R> {
     ///
     /// # Errors
     /// As [`Cycle::new`].
-    pub fn with_eyes(plan: &Plan, robot: R, own: Eyes, mut others: Vec<Eyes>) -> Result<Self> {
+    pub fn with_eyes(plan: &Plan, robot: R, mut own: Eyes, mut others: Vec<Eyes>) -> Result<Self> {
         let settings = &plan.settings;
+        let judge = plan.judge()?;
+        own.look_for(judge.looks());
         others.insert(0, own);
         let format = match others.iter().flat_map(|eyes| &eyes.chains).all(|chain| chain.likes() == Format::Grey) {
             true => Format::Grey,
@@ -71,7 +73,7 @@ impl<R: Robot> Cycle<R> {
             robot,
             states: vec![0; others.len()],
             eyes: others,
-            judge: plan.judge()?,
+            judge,
             actions: settings.actions.clone(),
             observation: Observation::asking_for(format, width_px, height_px, settings.laser.beams as usize),
             steps: 0,
@@ -115,6 +117,7 @@ impl<R: Robot> Cycle<R> {
     /// If the script fails.
     pub(super) fn swap_judge(&mut self, plan: &Plan) -> Result<()> {
         self.judge = plan.judge()?;
+        self.eyes[0].look_for(self.judge.looks());
         self.potential = 0.0;
         self.calibrate()?;
         self.rest()
@@ -217,17 +220,10 @@ impl<R: Robot> Cycle<R> {
     }
 
     fn fill_facts(&mut self, action: usize, step: u64) {
-        let grid = self.eyes[0].grid();
-        let facts = self.judge.facts_mut();
         let twist = self.actions.get(action).copied().unwrap_or_default();
+        let facts = self.judge.facts_mut();
         facts.ranges_m.clone_from(&self.observation.scan.ranges_m);
-        facts.cells.clear();
-        let shares = grid.counts().iter().enumerate();
-        facts.cells.extend(shares.map(|(cell, count)| *count as f32 / grid.area_px(cell) as f32));
-        facts.grid = grid.size();
-        facts.seen = grid.occupied().contains(&true);
-        let pixels = self.observation.image.width_px * self.observation.image.height_px;
-        facts.coverage = f64::from(grid.counts().iter().sum::<u32>()) / pixels as f64;
+        self.eyes[0].tell(&mut facts.views);
         facts.state = self.states[0];
         facts.action = action;
         facts.action_linear_m_per_s = twist.linear_m_per_s;

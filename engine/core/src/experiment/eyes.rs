@@ -2,8 +2,11 @@
 
 use crate::diagnostic::Result;
 use crate::filter::Chain;
+use crate::judge::{LineFacts, Look, PatchFacts, ViewFacts};
+use crate::sensors::CameraRays;
 use crate::sensors::observation::Image;
-use crate::state::{Grid, Percept, StateMap};
+use crate::settings::{CameraSettings, Settings};
+use crate::state::{Grid, Patch, PatchFinder, Percept, StateMap, floor_line};
 
 /// What turns an image into a state.
 pub struct Eyes {
@@ -12,13 +15,36 @@ pub struct Eyes {
     /// The grid of each view.
     pub(super) grids: Vec<Grid>,
     pub(super) map: Box<dyn StateMap>,
+    /// What is looked for in the mask of each view besides, and the rays of the camera.
+    looks: Vec<Look>,
+    finder: PatchFinder,
+    rays: CameraRays,
+    width_px: usize,
+    height_px: usize,
 }
 
 impl Eyes {
-    /// Eyes of one view, a chain and a grid for images of the same size, and of the map that makes states of what they see.
+    /// Eyes of some views, a chain and a grid for each, all for the same image, and of the map that makes states of what they see.
     #[must_use]
-    pub(super) fn new(chain: Chain, grid: Grid, map: Box<dyn StateMap>) -> Self {
-        Self { chains: vec![chain], grids: vec![grid], map }
+    pub(super) fn new(chains: Vec<Chain>, grids: Vec<Grid>, map: Box<dyn StateMap>, settings: &Settings) -> Self {
+        let CameraSettings { width_px, height_px, .. } = settings.camera;
+        let (width_px, height_px) = (width_px as usize, height_px as usize);
+        let (looks, rays) = (Vec::new(), CameraRays::new(&settings.camera));
+        Self { chains, grids, map, looks, finder: PatchFinder::default(), rays, width_px, height_px }
+    }
+
+    /// The same eyes with another map.
+    #[must_use]
+    pub(super) fn with_map(self, map: Box<dyn StateMap>) -> Self {
+        Self { map, ..self }
+    }
+
+    /// From now on these things are looked for in the masks.
+    pub(super) fn look_for(&mut self, looks: &[Look]) {
+        self.looks = looks.to_vec();
+        if looks.iter().any(|look| look.patch) {
+            self.finder = PatchFinder::new(self.width_px, self.height_px);
+        }
     }
 
     /// Looks at an image.
@@ -36,6 +62,60 @@ impl Eyes {
     pub(super) fn state(&mut self, image: &Image, digits: &[usize]) -> usize {
         let (mask, grid) = (self.chains[0].mask(), &self.grids[0]);
         self.map.encode(Percept { image, mask, grid, grids: &self.grids, digits })
+    }
+
+    /// What the image that was looked at last shows in each view. Allocates nothing after the first time.
+    pub(super) fn tell(&mut self, views: &mut Vec<ViewFacts>) {
+        views.resize_with(self.grids.len(), ViewFacts::default);
+        let pixels = (self.width_px * self.height_px) as f64;
+        for (index, (view, grid)) in views.iter_mut().zip(&self.grids).enumerate() {
+            if view.areas_px.is_empty() {
+                view.areas_px.extend((0..grid.counts().len()).map(|cell| grid.area_px(cell) as u32));
+            }
+            view.cells.clear();
+            let shares = grid.counts().iter().zip(&view.areas_px);
+            view.cells.extend(shares.map(|(count, area)| *count as f32 / *area as f32));
+            (view.grid, view.index) = (grid.size(), grid.state());
+            view.seen = grid.occupied().contains(&true);
+            view.coverage = f64::from(grid.counts().iter().sum::<u32>()) / pixels;
+            let look = self.looks.get(index).copied().unwrap_or_default();
+            if look.patch {
+                let mask = self.chains[index].mask();
+                let patch = self.finder.find(mask, self.width_px);
+                let seen = patch.is_seen();
+                view.patch = if seen { self.patch(&patch, pixels) } else { PatchFacts::NOTHING };
+                view.line = if seen && look.line { self.line(mask, &patch) } else { LineFacts::NOTHING };
+            }
+        }
+    }
+
+    fn patch(&self, patch: &Patch, pixels: f64) -> PatchFacts {
+        let (x, y) = patch.centre();
+        let (bearing_deg, elevation_deg) = self.rays.bearing_deg(x, y);
+        let half = 0.5 * self.width_px as f64;
+        let edge = |x: f64| self.rays.bearing_deg(x, y).0;
+        let lowest = self.rays.floor_m(x, f64::from(patch.rows.1) + 1.0);
+        PatchFacts {
+            size: f64::from(patch.pixels) / pixels,
+            bearing_deg,
+            elevation_deg,
+            offset: (half - x) / half,
+            left_deg: edge(f64::from(patch.columns.0)),
+            right_deg: edge(f64::from(patch.columns.1) + 1.0),
+            floor_m: lowest.map_or(PatchFacts::NOTHING.floor_m, |at| {
+                (at.x * at.x + at.y * at.y).sqrt().min(PatchFacts::NOTHING.floor_m)
+            }),
+        }
+    }
+
+    fn line(&self, mask: &[u8], patch: &Patch) -> LineFacts {
+        floor_line(mask, self.width_px, patch, |x, y| self.rays.floor_m(x, y)).map_or(LineFacts::NOTHING, |line| {
+            LineFacts {
+                seen: true,
+                offset_m: line.offset_m.clamp(-10.0, 10.0),
+                heading_deg: libm::atan(line.slope).to_degrees(),
+            }
+        })
     }
 
     /// The first view's chain.

@@ -83,7 +83,8 @@ impl Plan {
     #[must_use]
     pub fn differs_beyond_reward(&self, other: &Self) -> Option<String> {
         let digests = |plan: &Self| -> Vec<Option<String>> {
-            let entries = plan.settings.filters.iter().map(|filter| plan.filters.find(&filter.name).ok());
+            let entries =
+                plan.settings.views().flat_map(|view| &view.filters).map(|filter| plan.filters.find(&filter.name).ok());
             entries.map(|entry| entry.and_then(|entry| entry.sha256.clone())).collect()
         };
         let same_world = other.layout.source.text == self.layout.source.text;
@@ -115,7 +116,9 @@ pub(super) fn first_fixed_difference(old: &Settings, new: &Settings) -> Option<(
     let row = row.map(|row| (row.name(), format!("{}.{}", row.group, row.key)));
     let parts = [
         (old.world == new.world, "the world", "world"),
-        (old.filters == new.filters, "the filters", "filter:0"),
+        (old.view.filters == new.view.filters, "the filters", "filter:0"),
+        (old.view.name == new.view.name && old.further_views == new.further_views, "the views", "state"),
+        (old.state == new.state, "the parts of the state", "state"),
         (old.actions == new.actions, "the actions", "actions"),
         (old.policies == new.policies, "the policies", "policy:0"),
     ];

@@ -3,6 +3,7 @@
 //! Nothing here prints, reads a clock or writes a file.
 
 mod certainty;
+mod changes;
 mod choosers;
 mod combination;
 mod cycle;

@@ -11,7 +11,7 @@ use crate::random::{Random, Stream};
 use crate::robot::{Robot, SimulatedRobot};
 use crate::sensors::Camera;
 use crate::sensors::observation::{Image, Observation};
-use crate::settings::Settings;
+use crate::settings::{Settings, UNNAMED_VIEW};
 use crate::world::World;
 use filter_api::Format;
 
@@ -22,20 +22,22 @@ const PLACES: usize = 16;
 /// Steps at random in which something must come into sight, if nothing is at the starts.
 const TRIAL_STEPS: u32 = 3_000;
 
-/// Is content with the first pixel that the filters leave: at the starts, or, since what is sought may stand round a corner, in
-/// a trial.
+/// Is content with the first pixel that the filters of each view leave: at the starts, or, since what is sought may stand round
+/// a corner, in a trial.
 ///
 /// # Errors
-/// `E-FILTER-BLIND` if they leave none anywhere.
+/// `E-FILTER-BLIND` for the first view of which they leave none anywhere.
 pub(super) fn check_outlook(plan: &Plan) -> Result<()> {
-    if plan.sees_at_the_starts()? || sees_in_a_trial(plan)? {
-        return Ok(());
+    let mut blind = plan.blind_at_the_starts()?;
+    if !blind.is_empty() {
+        open_eyes_in_a_trial(plan, &mut blind)?;
     }
-    let (settings, layout) = (&plan.settings, &plan.layout);
-    let stages = settings.filters.len();
-    let place = format!("filter:{}", stages.saturating_sub(1));
+    let Some(view) = blind.first().and_then(|view| plan.settings.views().nth(*view)) else { return Ok(()) };
+    let place = view.place(&format!("filter:{}", view.filters.len().saturating_sub(1)));
+    let what =
+        if view.name == UNNAMED_VIEW { "the filters leave".to_owned() } else { format!("view \"{}\" has", view.name) };
     let message =
-        format!("the filters leave nothing of any image in world '{}': there is nothing to learn from", layout.name);
+        format!("{what} nothing of any image in world '{}': there is nothing to learn from", plan.layout.name);
     let error = Diagnostic::new("E-FILTER-BLIND", message).help(
         "check the filter's parameters, the camera's tilt and height, and that the world shows what the filter looks for",
     );
@@ -48,15 +50,17 @@ pub(super) fn check_outlook(plan: &Plan) -> Result<()> {
 }
 
 impl Plan {
-    /// Whether the filters leave any pixel of what the camera sees, all round, from the starts and along the lap route.
+    /// The numbers of the views whose filters leave no pixel of what the camera sees, all round, from the starts and along the
+    /// lap route.
     ///
     /// # Errors
-    /// If the filter chain cannot be built.
-    pub fn sees_at_the_starts(&self) -> Result<bool> {
+    /// If a filter chain cannot be built.
+    pub fn blind_at_the_starts(&self) -> Result<Vec<usize>> {
         let (settings, layout) = (&self.settings, &self.layout);
         let mut world = World::new(Arc::clone(layout), &[settings.robot], settings.run.period_s, 0);
         let mut camera = Camera::new(&layout.scene, &without_noise(settings).camera, 0);
-        let mut chain = self.chain()?;
+        let mut chains = self.chains()?;
+        let mut blind: Vec<usize> = (0..chains.len()).collect();
         let mut image = Image::new(settings.camera.width_px as usize, settings.camera.height_px as usize);
         let lap = layout.lap.map(|lap| &layout.routes[lap]);
         let along = lap
@@ -67,27 +71,32 @@ impl Plan {
                 let turn = TAU * heading as f64 / HEADINGS as f64;
                 world.place(0, Pose::new(place.x_m, place.y_m, place.yaw_rad + turn));
                 camera.render(&world.body(0).world_from_robot(), world.seen_by(0), &mut image);
-                if leaves_any(&mut chain, &image) {
-                    return Ok(true);
+                blind.retain(|view| !leaves_any(&mut chains[*view], &image));
+                if blind.is_empty() {
+                    return Ok(blind);
                 }
             }
         }
-        Ok(false)
+        Ok(blind)
     }
 }
 
-/// Whether the filters leave any pixel while the robot drives about at random.
-fn sees_in_a_trial(plan: &Plan) -> Result<bool> {
+/// Leaves the views in the list of which no pixel is left while the robot drives about at random.
+fn open_eyes_in_a_trial(plan: &Plan, blind: &mut Vec<usize>) -> Result<()> {
     let settings = without_noise(&plan.settings);
     let mut robot = SimulatedRobot::new(&plan.layout, &settings, 0)?;
-    let mut chain = plan.chain()?;
+    let mut chains = plan.chains()?;
     let mut random = Random::new(0, Stream::Untrained);
     let (width, height) = (settings.camera.width_px as usize, settings.camera.height_px as usize);
     let mut observation = Observation::asking_for(Format::Rgb, width, height, settings.laser.beams as usize);
     for _ in 0..TRIAL_STEPS {
         // A sensor that fails says so itself, in the run.
-        if robot.observe(&mut observation).is_err() || leaves_any(&mut chain, &observation.image) {
-            return Ok(true);
+        if robot.observe(&mut observation).is_err() {
+            blind.clear();
+        }
+        blind.retain(|view| !leaves_any(&mut chains[*view], &observation.image));
+        if blind.is_empty() {
+            break;
         }
         if observation.contact || observation.fallen {
             robot.recover()?;
@@ -95,7 +104,7 @@ fn sees_in_a_trial(plan: &Plan) -> Result<bool> {
             robot.act(*action)?;
         }
     }
-    Ok(false)
+    Ok(())
 }
 
 /// Noise would be taken for something seen.

@@ -1,13 +1,13 @@
 //! What a script's settings are made into, each part checked by itself: chain, grid, judge, mirror.
 
-use super::combination;
+use super::{Eyes, combination};
 use crate::diagnostic::{Diagnostic, Mistakes, Result};
 use crate::filter::{Catalogue, Chain, ChainError};
 use crate::geometry::Twist;
 use crate::judge::Judge;
 use crate::learner::Mirror;
 use crate::script::{Behaviour, Unread};
-use crate::settings::Settings;
+use crate::settings::{PartSettings, Settings, ViewSettings};
 use crate::state::{ComposedMap, Grid, GridMap, MAX_STATES, StateMap, StatePart};
 
 /// A behaviour with its settings and the filters that it may use.
@@ -24,69 +24,108 @@ impl Parts<'_> {
             mistakes.take(combination::check_policies(self.behaviour, self.settings));
         }
         let camera = !unread.has("camera", "width_px") && !unread.has("camera", "height_px");
-        let chain = camera && !unread.any_of("filter") && mistakes.take(self.tried_chain()).is_some();
-        let grid = camera && !unread.any_of("grid") && mistakes.take(self.grid()).is_some();
+        let views = camera && !unread.any_of("view");
+        let every = |try_one: &mut dyn FnMut(&ViewSettings) -> bool| self.settings.views().all(try_one);
+        let chain =
+            views && !unread.any_of("filter") && every(&mut |view| mistakes.take(self.tried_chain(view)).is_some());
+        let grid = views && !unread.any_of("grid") && every(&mut |view| mistakes.take(self.grid(view)).is_some());
         if !unread.has("laser", "beams") {
             mistakes.take(self.judge());
         }
-        if grid && !unread.any_of("actions") && !unread.any_of("learner") {
+        if grid && !["actions", "learner", "state", "stages"].iter().any(|call| unread.any_of(call)) {
             mistakes.take(self.state_map().and_then(|map| self.mirror(&*map)));
         }
         chain && grid && !unread.any_of("camera")
     }
 
-    /// A fresh filter chain.
-    pub(super) fn chain(&self) -> Result<Chain> {
-        let camera = &self.settings.camera;
-        let (width_px, height_px) = (camera.width_px as usize, camera.height_px as usize);
-        Chain::new(&self.settings.filters, width_px, height_px, self.filters).map_err(|error| self.in_chain(error))
+    /// The fresh filter chain of a view.
+    pub(super) fn chain(&self, view: &ViewSettings) -> Result<Chain> {
+        let (width_px, height_px) = self.image_px();
+        Chain::new(&view.filters, width_px, height_px, self.filters).map_err(|error| self.in_chain(view, error))
     }
 
     /// A fresh filter chain, or all that is wrong in it.
-    fn tried_chain(&self) -> Result<Chain> {
-        self.chain().map_err(|first| {
+    fn tried_chain(&self, view: &ViewSettings) -> Result<Chain> {
+        self.chain(view).map_err(|first| {
             let mut mistakes = Mistakes::new(self.behaviour.source());
-            let faults = Chain::faults(&self.settings.filters, self.filters);
-            faults.into_iter().for_each(|fault| mistakes.add(*self.in_chain(fault)));
+            let faults = Chain::faults(&view.filters, self.filters);
+            faults.into_iter().for_each(|fault| mistakes.add(*self.in_chain(view, fault)));
             // What is written may be well, and a filter refuse it.
             if mistakes.is_empty() { first } else { mistakes.end().err().unwrap_or(first) }
         })
     }
 
-    fn in_chain(&self, error: ChainError) -> Box<Diagnostic> {
-        let stage = format!("filter:{}", error.stage);
+    fn in_chain(&self, view: &ViewSettings, error: ChainError) -> Box<Diagnostic> {
+        let stage = view.place(&format!("filter:{}", error.stage));
         let place = error.parameter.map_or(stage.clone(), |parameter| format!("{stage}.{parameter}"));
         self.point(*error.error, &place, "here", None)
     }
 
-    /// A fresh grid.
-    pub(super) fn grid(&self) -> Result<Grid> {
-        let camera = &self.settings.camera;
-        Grid::new(&self.settings.grid, camera.width_px as usize, camera.height_px as usize).map_err(|error| {
+    fn image_px(&self) -> (usize, usize) {
+        (self.settings.camera.width_px as usize, self.settings.camera.height_px as usize)
+    }
+
+    /// The fresh grid of a view.
+    pub(super) fn grid(&self, view: &ViewSettings) -> Result<Grid> {
+        let (width_px, height_px) = self.image_px();
+        Grid::new(&view.grid, width_px, height_px).map_err(|error| {
             let help = Some("use fewer rows or columns".to_owned());
-            self.point(Diagnostic::new("E-GRID", error.0), "grid.rows", "this many rows", help)
+            self.point(Diagnostic::new("E-GRID", error.0), &view.place("grid.rows"), "this many rows", help)
         })
+    }
+
+    /// Fresh eyes: a chain and a grid for each view, and the map.
+    pub(super) fn eyes(&self) -> Result<Eyes> {
+        let chains = self.settings.views().map(|view| self.chain(view)).collect::<Result<Vec<_>>>()?;
+        let grids = self.settings.views().map(|view| self.grid(view)).collect::<Result<Vec<_>>>()?;
+        Ok(Eyes::new(chains, grids, self.state_map()?, self.settings))
     }
 
     /// A fresh map from what is perceived to states.
     pub(super) fn state_map(&self) -> Result<Box<dyn StateMap>> {
-        let view = GridMap::new(&self.settings.grid, self.grid()?);
-        if self.settings.stages.is_empty() {
-            return Ok(Box::new(view));
+        let Settings { state, stages, view, further_views, .. } = self.settings;
+        if state.is_empty() && stages.is_empty() && further_views.is_empty() {
+            return Ok(Box::new(GridMap::new(&view.grid, self.grid(view)?)));
         }
-        let labels = self.settings.stages.iter().map(|stage| format!("\"{stage}\"")).collect();
-        let map = ComposedMap::new(vec![
-            StatePart::View { name: "camera".to_owned(), view: 0, map: view },
-            StatePart::Digit { name: "stage".to_owned(), digit: 0, labels },
-        ]);
-        match map.count() {
-            Some(count) if count <= MAX_STATES => Ok(Box::new(map)),
-            _ => {
-                let message = format!("the grid and the stages make more than {MAX_STATES} states");
-                let help = Some("use fewer rows, columns or stages".to_owned());
-                Err(self.point(Diagnostic::new("E-GRID", message), "stages", "too many states", help))
+        let of_view = |(view, settings): (usize, &ViewSettings)| {
+            let map = GridMap::new(&settings.grid, self.grid(settings)?);
+            Ok(StatePart::View { name: settings.name.clone(), view, map })
+        };
+        let views = || self.settings.views().enumerate();
+        let mut parts = match state.is_empty() {
+            true => views().map(of_view).collect::<Result<Vec<_>>>()?,
+            false => Vec::new(),
+        };
+        let mut digits = 0..;
+        for part in state {
+            match part {
+                PartSettings::View(name) => {
+                    let view = views().find(|(_, view)| view.name == *name).map(of_view).transpose()?;
+                    parts.extend(view);
+                }
+                PartSettings::Bins { of, .. } => {
+                    let digit = digits.next().unwrap_or_default();
+                    parts.push(StatePart::Digit { name: of.clone(), digit, labels: part.labels() });
+                }
             }
         }
+        if !stages.is_empty() {
+            let (name, digit) = ("stage".to_owned(), digits.next().unwrap_or_default());
+            let labels = stages.iter().map(|stage| format!("\"{stage}\"")).collect();
+            parts.push(StatePart::Digit { name, digit, labels });
+        }
+        let map = ComposedMap::new(parts);
+        match map.count() {
+            Some(count) if count <= MAX_STATES => Ok(Box::new(map)),
+            _ => Err(self.too_many_states(&map)),
+        }
+    }
+
+    fn too_many_states(&self, map: &ComposedMap) -> Box<Diagnostic> {
+        let message = format!("{} make more than {MAX_STATES} states", map.factors());
+        let place = ["state", "stages"].into_iter().find(|place| self.behaviour.place_of(place).is_some());
+        let help = Some("use fewer parts, smaller grids, fewer edges or fewer stages".to_owned());
+        self.point(Diagnostic::new("E-GRID", message), place.unwrap_or_default(), "too many states", help)
     }
 
     /// The mirror that `learner.mirror` asks for.

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::changes::changed;
 use super::parts::Parts;
 use super::{Eyes, Leg, Member, outlook};
 use crate::diagnostic::{Diagnostic, Mistakes, Result, nearest_name, printable};
@@ -12,7 +13,7 @@ use crate::learner::{Mirror, Task};
 use crate::random::{Random, Stream};
 use crate::robot::SimulatedRobot;
 use crate::script::{Behaviour, Draft, Measurable, Unread};
-use crate::settings::{SETTINGS, Settings, Value, apply};
+use crate::settings::Settings;
 use crate::state::{Grid, StateMap};
 use crate::verdict::Success;
 use crate::world::{FloorSquares, Layout};
@@ -168,20 +169,25 @@ impl Plan {
         Parts { behaviour: &self.behaviour, settings: &self.settings, filters: &self.filters }
     }
 
-    /// A fresh filter chain.
+    /// A fresh filter chain of the first view.
     ///
     /// # Errors
     /// If the chain cannot be built; the error points at the script's line.
     pub fn chain(&self) -> Result<Chain> {
-        self.parts().chain()
+        self.parts().chain(&self.settings.view)
     }
 
-    /// A fresh grid.
+    /// Fresh filter chains, one for each view.
+    pub(super) fn chains(&self) -> Result<Vec<Chain>> {
+        self.settings.views().map(|view| self.parts().chain(view)).collect()
+    }
+
+    /// A fresh grid of the first view.
     ///
     /// # Errors
     /// If it would have too many states, or cells without pixels.
     pub fn grid(&self) -> Result<Grid> {
-        self.parts().grid()
+        self.parts().grid(&self.settings.view)
     }
 
     /// A fresh map from the grid to states.
@@ -197,7 +203,7 @@ impl Plan {
     /// # Errors
     /// As [`Plan::chain`] and [`Plan::grid`].
     pub fn eyes(&self) -> Result<Eyes> {
-        Ok(Eyes::new(self.chain()?, self.grid()?, self.state_map()?))
+        self.parts().eyes()
     }
 
     /// The mirror that `learner.mirror` asks for, over the states of a map.
@@ -247,73 +253,6 @@ impl Plan {
     /// If a rule does not fit the settings, such as a beam that the laser does not have.
     pub fn judge(&self) -> Result<Judge> {
         self.parts().judge()
-    }
-}
-
-pub(super) fn changed(settings: &Settings, overrides: &Overrides) -> Result<Settings> {
-    let mut settings = settings.clone();
-    for pair in &overrides.set {
-        set(&mut settings, pair)?;
-    }
-    if let Some(steps) = overrides.steps {
-        settings.run.steps = steps;
-    }
-    if let Some(steps) = overrides.test_steps {
-        settings.run.test_steps = steps;
-    }
-    if let Some(world) = &overrides.world {
-        settings.world.clone_from(world);
-    }
-    Ok(settings)
-}
-
-/// Carries out one `--set KEY=VALUE`.
-fn set(settings: &mut Settings, pair: &str) -> Result<()> {
-    let wrong = |message: String, help: String| Diagnostic::new("E-SET", message).help(help).fail();
-    let Some((name, text)) = pair.split_once('=') else {
-        let message = format!("'{}' is not KEY=VALUE", printable(pair));
-        return wrong(message, "write for example: --set camera.tilt_deg=40".to_owned());
-    };
-    let Some((group, key)) = name.trim().split_once('.') else {
-        let keys: Vec<_> = SETTINGS.iter().map(|row| row.name()).collect();
-        let suffix = format!(".{}", name.trim());
-        let near = keys.iter().find(|key| key.ends_with(&suffix)).map(String::as_str);
-        let near = near.or_else(|| nearest_name(name, keys.iter().map(String::as_str))).unwrap_or("camera.tilt_deg");
-        return wrong(format!("there is no setting '{}'", printable(name)), format!("did you mean '{near}'?"));
-    };
-    let value = parse(text.trim());
-    if group == "filter" {
-        return set_filter(settings, key, &value);
-    }
-    apply(settings, group, key, &value).map_err(|error| {
-        let diagnostic = Diagnostic::new("E-SET", format!("{}: '{}'", error.message, printable(pair)));
-        Box::new(match error.help {
-            Some(help) => diagnostic.help(help),
-            None => diagnostic,
-        })
-    })
-}
-
-fn set_filter(settings: &mut Settings, key: &str, value: &Value) -> Result<()> {
-    let names: Vec<_> = settings.filters.iter().map(|filter| filter.name.clone()).collect();
-    let stage = key.split_once('.').and_then(|(name, parameter)| {
-        Some((settings.filters.iter_mut().find(|filter| filter.name == name)?, parameter))
-    });
-    let (Some((filter, parameter)), Value::Number(number)) = (stage, value) else {
-        let message = format!("'filter.{}' is not a number of one of the behaviour's filters", printable(key));
-        let help = format!("write filter.NAME.PARAMETER=NUMBER; the filters are: {}", names.join(", "));
-        return Diagnostic::new("E-SET", message).help(help).fail();
-    };
-    filter.parameters.retain(|(name, _)| name != parameter);
-    filter.parameters.push((parameter.to_owned(), *number));
-    Ok(())
-}
-
-fn parse(text: &str) -> Value {
-    match (text, text.parse::<f64>()) {
-        ("true" | "false", _) => Value::Flag(text == "true"),
-        (_, Ok(number)) => Value::Number(number),
-        _ => Value::Text(text.trim_matches('"').to_owned()),
     }
 }
 

@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use super::changes::changed;
 use super::parts::Parts;
-use super::plan::changed;
 use super::{Overrides, Plan};
 use crate::diagnostic::Result;
 use crate::filter::{Catalogue, Chain};
@@ -42,7 +42,7 @@ impl Sight {
     /// # Errors
     /// As [`Plan::chain`].
     pub fn chain(&self) -> Result<Chain> {
-        self.parts().chain()
+        self.parts().chain(&self.settings.view)
     }
 
     /// A fresh grid.
@@ -50,7 +50,7 @@ impl Sight {
     /// # Errors
     /// As [`Plan::grid`].
     pub fn grid(&self) -> Result<Grid> {
-        self.parts().grid()
+        self.parts().grid(&self.settings.view)
     }
 
     /// Whether the behaviour learns; if not, it combines policies that see with filters of their own.

@@ -1,6 +1,7 @@
 //! What judging needs of a script.
 
 use super::explain;
+use super::expression::{Number, StepFacts};
 use super::memory::Remembered;
 use super::needs::Needs;
 use super::readings::Part;
@@ -9,6 +10,31 @@ use super::stopped::StopPlaces;
 use crate::diagnostic::{Mistakes, Result, SourceText};
 use rhai::{AST, Dynamic, Engine, Position, Scope};
 use std::ops::Range;
+
+/// What a script reads of a view besides its grid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Look {
+    /// The largest patch of its mask.
+    pub patch: bool,
+    /// The line that this shows.
+    pub line: bool,
+}
+
+/// `bins(x, [edges])`: a value told apart by ranges, one digit of the state.
+#[derive(Debug)]
+pub(crate) struct Bins {
+    pub of: Number,
+    /// Where the next range begins, rising.
+    pub edges: Vec<f64>,
+}
+
+impl Bins {
+    /// The number of the range in which its value lies now: how many edges it has reached.
+    pub(crate) fn digit(&self, inputs: StepFacts<'_>) -> usize {
+        let value = self.of.value(inputs);
+        self.edges.iter().take_while(|edge| value >= **edge).count()
+    }
+}
 
 /// What judging needs of a script.
 #[derive(Debug)]
@@ -22,6 +48,12 @@ pub(crate) struct CompiledScript {
     pub needs: Needs,
     /// What is worked out before the rules, in its order.
     pub remembered: Vec<Remembered>,
+    /// The names of its views, the first one first.
+    pub views: Vec<String>,
+    /// What must be found in the mask of each.
+    pub looks: Vec<Look>,
+    /// What the script tells apart by ranges, for its states.
+    pub bins: Vec<Bins>,
     /// The names of its stages; none if it has no stages.
     pub stages: Vec<String>,
     /// Whether it reads what the wheels counted.
@@ -41,7 +73,8 @@ pub(crate) struct CompiledScript {
 impl CompiledScript {
     /// Whether anything of it outlasts a step, besides how long conditions have held.
     pub(crate) fn remembers(&self) -> bool {
-        self.looks_back || self.counts_way || !self.remembered.is_empty() || !self.stages.is_empty()
+        let parts = !self.bins.is_empty() || !self.stages.is_empty();
+        self.looks_back || self.counts_way || !self.remembered.is_empty() || parts
     }
 
     /// Checks that every beam that is named exists.
@@ -57,18 +90,33 @@ impl CompiledScript {
         self.told(wrong)
     }
 
-    /// Checks that every grid cell that is named exists. Allocates nothing if they do.
+    /// Checks that every grid cell that is named exists; `size` gives rows and columns of a view's grid. Allocates nothing if
+    /// they do.
     ///
     /// # Errors
     /// For each that does not.
-    pub(crate) fn check_cells(&self, (rows, columns): (usize, usize)) -> Result<()> {
-        let outside = |number: i64, count: usize| usize::try_from(number).map_or(true, |number| number >= count);
+    pub(crate) fn check_cells(&self, size: impl Fn(usize) -> (usize, usize)) -> Result<()> {
+        let outside = |number: Option<i64>, count: usize| {
+            number.is_some_and(|number| usize::try_from(number).map_or(true, |number| number >= count))
+        };
         let cells = self.needs.cells.iter();
-        let wrong = cells.filter(|(row, column, _)| outside(*row, rows) || outside(*column, columns));
-        self.told(wrong.map(|(row, column, position)| {
-            let (last_row, last_column) = (rows.saturating_sub(1), columns.saturating_sub(1));
-            let message = format!("the grid has rows 0 to {last_row} and columns 0 to {last_column}");
-            (*position, message, format!("found row {row}, column {column}"))
+        let wrong = cells.filter(|cell| {
+            let (rows, columns) = size(cell.view);
+            outside(cell.row, rows) || outside(cell.column, columns)
+        });
+        self.told(wrong.map(|cell| {
+            let (rows, columns) = size(cell.view);
+            let message = format!(
+                "the grid has rows 0 to {} and columns 0 to {}",
+                rows.saturating_sub(1),
+                columns.saturating_sub(1)
+            );
+            let found = match (cell.row, cell.column) {
+                (Some(row), Some(column)) => format!("found row {row}, column {column}"),
+                (Some(row), None) => format!("found row {row}"),
+                (None, column) => format!("found column {}", column.unwrap_or_default()),
+            };
+            (cell.position, message, found)
         }))
     }
 

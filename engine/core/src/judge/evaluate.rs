@@ -8,7 +8,7 @@ use super::memory::{Measure, Memory, Remembered};
 use super::readings::Part;
 use super::rule::{Clause, CompiledRule, ScriptClause};
 use super::running;
-use super::views::{AllFacts, number, view};
+use super::views::{AllFacts, SeenView, number, view};
 use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
 use crate::outcome::Then;
 use rhai::{CallFnOptions, Dynamic, EvalAltResult, Map, Scope};
@@ -90,6 +90,9 @@ impl Present {
                 "previous" => drop(scope.push_dynamic("previous", view("previous", &self.previous))),
                 "calibrated" => drop(scope.push_dynamic("calibrated", self.calibration().as_ref().clone())),
                 name if let Some(value) = self.measure(name) => drop(scope.push_dynamic(name, value)),
+                name if let Some(view) = compiled.views.iter().position(|view| view == name) => {
+                    scope.push(name, SeenView { facts: Arc::clone(&self.facts), view });
+                }
                 group => match view(group, &self.facts) {
                     unknown if unknown.is_unit() => {}
                     known => drop(scope.push_dynamic(group, known)),

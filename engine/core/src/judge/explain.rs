@@ -85,8 +85,15 @@ pub(crate) fn unknown_group(source: &SourceText, position: Position, name: &str)
 }
 
 /// A fact that does not exist, with the nearest that does.
-pub(crate) fn unknown_fact(source: &SourceText, position: Position, group: &str, key: &str) -> Diagnostic {
-    let names = names_in(group);
+///
+/// `group` is written as the first and listed as the second: they differ for a view with a name.
+pub(crate) fn unknown_fact(
+    source: &SourceText,
+    position: Position,
+    (group, listed): (&str, &str),
+    key: &str,
+) -> Diagnostic {
+    let names = names_in(listed);
     let near = nearest_name(key, names.iter().copied());
     if let (Some(help), None, false) = (withheld(key), near, matches!(group, "laser" | "camera")) {
         return only_the_simulator_knows(source, offset(source, position), key, help);

@@ -4,6 +4,7 @@ use super::fact_columns::Getter;
 use super::fact_table::{Fact, FactId};
 use super::facts::{self, Facts};
 use super::memory::Memory;
+use super::view_facts::ViewFacts;
 
 /// A part of what `fn calibrate` returned, as rules read it.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,7 +67,13 @@ pub(crate) enum Number {
     Fact(fn(&Facts) -> f64, FactId),
     Whole(fn(&Facts) -> i64, FactId),
     Beam(usize),
-    Cell(usize, usize),
+    /// Of a view, the first one being 0.
+    View(usize, fn(&ViewFacts) -> f64, FactId),
+    ViewWhole(usize, fn(&ViewFacts) -> i64, FactId),
+    /// View, row, column.
+    Cell(usize, usize, usize),
+    /// View, and some of its rows or columns.
+    Band(usize, fn(&ViewFacts, usize, usize) -> f64, (usize, usize)),
     BeamAt(f64),
     Sector(BeamSpan, fn(&[f32]) -> f64),
     CountBelow(BeamSpan, Box<Number>),
@@ -94,6 +101,7 @@ pub(crate) enum Number {
 pub(crate) enum Flag {
     Constant(bool),
     Fact(fn(&Facts) -> bool),
+    View(usize, fn(&ViewFacts) -> bool),
     Hit(usize),
     HitAt(f64),
     Stage(usize),
@@ -115,12 +123,15 @@ pub(crate) enum Typed {
 }
 
 impl Typed {
-    /// A fact that is read without arguments; nothing for others.
-    pub(crate) const fn of_fact(fact: &Fact) -> Option<Self> {
+    /// A fact that is read without arguments, of this view if it is one of a view; nothing for others.
+    pub(crate) const fn of_fact(fact: &Fact, view: usize) -> Option<Self> {
         match fact.get {
             Getter::Number(get) => Some(Self::Number(Number::Fact(get, fact.id))),
             Getter::Whole(get) => Some(Self::Whole(Number::Whole(get, fact.id))),
             Getter::Flag(get) => Some(Self::Flag(Flag::Fact(get))),
+            Getter::ViewNumber(get) => Some(Self::Number(Number::View(view, get, fact.id))),
+            Getter::ViewWhole(get) => Some(Self::Whole(Number::ViewWhole(view, get, fact.id))),
+            Getter::ViewFlag(get) => Some(Self::Flag(Flag::View(view, get))),
             Getter::Sector(_) | Getter::Hits | Getter::Call(..) => None,
         }
     }
@@ -142,7 +153,10 @@ impl Number {
             Self::Constant(_) | Self::Fact(..) => self.value(inputs),
             Self::Whole(get, _) => get(inputs.facts) as f64,
             Self::Beam(beam) => inputs.facts.beam_m(*beam),
-            Self::Cell(row, column) => inputs.facts.cell(*row, *column),
+            Self::View(view, get, _) => get(inputs.facts.view(*view)),
+            Self::ViewWhole(view, get, _) => get(inputs.facts.view(*view)) as f64,
+            Self::Cell(view, row, column) => inputs.facts.view(*view).cell(*row, *column),
+            Self::Band(view, get, (from, to)) => get(inputs.facts.view(*view), *from, *to),
             Self::BeamAt(bearing) => inputs.facts.beam_m(inputs.facts.beam_at(*bearing)),
             Self::Sector(span, get) => get(span.ranges_m(inputs.facts)),
             Self::CountBelow(span, limit) => {
@@ -175,6 +189,7 @@ impl Flag {
         match self {
             Self::Constant(value) => *value,
             Self::Fact(get) => get(inputs.facts),
+            Self::View(view, get) => get(inputs.facts.view(*view)),
             Self::Hit(beam) => inputs.facts.hit(*beam),
             Self::HitAt(bearing) => inputs.facts.hit(inputs.facts.beam_at(*bearing)),
             Self::Stage(stage) => inputs.facts.stage.index == *stage,

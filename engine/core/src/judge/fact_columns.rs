@@ -1,6 +1,7 @@
 //! The columns of the list of facts: how each is read, in which unit, between which values, which beam is behind it.
 
 use super::facts::Facts;
+use super::view_facts::ViewFacts;
 
 /// How a fact is read.
 #[derive(Debug, Clone, Copy)]
@@ -11,6 +12,12 @@ pub(crate) enum Getter {
     Whole(fn(&Facts) -> i64),
     /// True or false.
     Flag(fn(&Facts) -> bool),
+    /// A number of one view.
+    ViewNumber(fn(&ViewFacts) -> f64),
+    /// A whole number of one view.
+    ViewWhole(fn(&ViewFacts) -> i64),
+    /// True or false of one view.
+    ViewFlag(fn(&ViewFacts) -> bool),
     /// A number that the ranges of a sector give, in metres.
     Sector(fn(&[f32]) -> f64),
     /// How many beams of a sector met anything.
@@ -37,6 +44,8 @@ pub enum Unit {
     Seconds,
     /// A share, 0 to 1.
     Share,
+    /// Halves of the image's width, positive to the left.
+    HalfImages,
     /// The number of a beam, from 0.
     Beam,
     /// A count of beams.
@@ -68,6 +77,8 @@ pub enum Reach {
     Steps,
     /// Between these, both included.
     Between(f64, f64),
+    /// Between these; the third where nothing is seen.
+    Seen(f64, f64, f64),
     /// True or false; true only after an accident of the body, so seldom.
     Accident,
     /// Anywhere; true or false.
@@ -107,6 +118,7 @@ impl Unit {
             Self::Degrees => "degrees",
             Self::Seconds => "seconds",
             Self::Share => "share",
+            Self::HalfImages => "half images",
             Self::Beam => "beam",
             Self::Beams => "beams",
             Self::Action => "action",
@@ -121,6 +133,7 @@ impl Reach {
     pub(crate) const fn bounds(self) -> (f64, f64) {
         match self {
             Self::Between(low, high) => (low, high),
+            Self::Seen(low, high, unseen) => (low.min(unseen), high.max(unseen)),
             Self::Laser | Self::Actions | Self::States | Self::Beams | Self::Steps => (0.0, f64::INFINITY),
             Self::Commanded | Self::Measured | Self::Accident | Self::Any => (f64::NEG_INFINITY, f64::INFINITY),
         }
@@ -131,6 +144,7 @@ impl Reach {
         match self {
             Self::Laser => "`laser.min_range_m` to `laser.max_range_m`".to_owned(),
             Self::Between(low, high) => format!("{low} to {high}"),
+            Self::Seen(low, high, unseen) => format!("{low} to {high}; unseen {unseen}"),
             Self::Actions | Self::States | Self::Beams | Self::Steps => "from 0".to_owned(),
             Self::Commanded | Self::Measured | Self::Accident | Self::Any => String::new(),
         }

@@ -1,10 +1,13 @@
 //! The one list of facts: scripts, checks, near names, the reference page and editors read it.
 
+use super::compiled::Look;
 use super::fact_columns::Beam::{Farthest, Front, Given, Left, Nearest, Right, Without as NoBeam, Worst};
-use super::fact_columns::Getter::{Call, Flag, Hits, Number, Sector, Whole};
-use super::fact_columns::Reach::{Accident, Actions, Any, Beams, Between, Commanded, Laser, Measured, States, Steps};
+use super::fact_columns::Getter::{Call, Flag, Hits, Number, Sector, ViewFlag, ViewNumber, ViewWhole, Whole};
+use super::fact_columns::Reach::{
+    Accident, Actions, Any, Beams, Between, Commanded, Laser, Measured, Seen, States, Steps,
+};
 use super::fact_columns::Unit::{
-    Degrees, Metres, MetresPerSecond, RadiansPerSecond, Seconds, Share, Without as NoUnit,
+    Degrees, HalfImages, Metres, MetresPerSecond, RadiansPerSecond, Seconds, Share, Without as NoUnit,
 };
 use super::fact_columns::{Beam, Getter, Reach, Unit};
 use super::facts::{decimal, greatest, least, mean};
@@ -33,7 +36,10 @@ pub struct Fact {
 /// The groups of facts, with what each is about.
 pub(crate) const GROUPS: &[(&str, &str)] = &[
     ("laser", "The ranges of the laser: beam 0 looks right, the last beam left, the middle one ahead."),
-    ("camera", "What the filter left of the camera's image."),
+    (
+        "camera",
+        "What the filters left of the camera's image; a named view has the same facts under its name: `red.seen`.",
+    ),
     ("action", "The action that the learner has just carried out."),
     ("robot", "The bumper, the tilt switch and the wheel encoders."),
     ("state", "What the learner sees."),
@@ -87,9 +93,22 @@ facts! {
     SectorCountBelow: sector "count_below", Unit::Beams, Beams, Nearest, Call("laser.sector(from, to).count_below(limit)", 1), "How many beams of the sector are nearer than `limit` metres.";
     SectorHits: sector "hits", Unit::Beams, Beams, NoBeam, Hits, "How many beams of the sector met anything nearer than the greatest range.";
     SectorExcess: sector "excess", Metres, Any, Worst, Call("laser.sector(from, to).excess(expected)", 1), "The greatest of range minus expected range; `expected` is an array with one number for each beam.";
-    CameraSeen: camera "seen", NoUnit, Any, NoBeam, Flag(|f| f.seen), "Whether any cell of the grid is occupied.";
-    CameraCoverage: camera "coverage", Share, Between(0.0, 1.0), NoBeam, Number(|f| f.coverage), "The share of the image that the filter left.";
+    CameraSeen: camera "seen", NoUnit, Any, NoBeam, ViewFlag(|v| v.seen), "Whether any cell of the grid is occupied.";
+    CameraCoverage: camera "coverage", Share, Between(0.0, 1.0), NoBeam, ViewNumber(|v| v.coverage), "The share of the image that the filter left.";
     CameraCell: camera "cell", Share, Between(0.0, 1.0), NoBeam, Call("camera.cell(row, column)", 2), "The share of one grid cell that the filter left; row 0 is the top, column 0 the left.";
+    CameraRows: camera "rows", Share, Between(0.0, 1.0), NoBeam, Call("camera.rows(from, to)", 2), "The share that the filter left of these rows of the grid, both included.";
+    CameraColumns: camera "columns", Share, Between(0.0, 1.0), NoBeam, Call("camera.columns(from, to)", 2), "The same of these columns.";
+    CameraIndex: camera "index", Unit::State, Any, NoBeam, ViewWhole(|v| v.index as i64), "The number of this view's grid alone, from 0.";
+    CameraSize: camera "size", Share, Between(0.0, 1.0), NoBeam, ViewNumber(|v| v.patch.size), "The largest patch that the filter left: its share of the image.";
+    CameraBearing: camera "bearing_deg", Degrees, Seen(-180.0, 180.0, 180.0), NoBeam, ViewNumber(|v| v.patch.bearing_deg), "Where its centre lies, from straight ahead, positive to the left.";
+    CameraElevation: camera "elevation_deg", Degrees, Seen(-90.0, 90.0, 90.0), NoBeam, ViewNumber(|v| v.patch.elevation_deg), "The same, above the horizon.";
+    CameraOffset: camera "offset", HalfImages, Seen(-1.0, 1.0, 2.0), NoBeam, ViewNumber(|v| v.patch.offset), "Where its centre lies across the image: 1 at the left edge, 0 in the middle.";
+    CameraLeft: camera "left_deg", Degrees, Seen(-180.0, 180.0, 180.0), NoBeam, ViewNumber(|v| v.patch.left_deg), "The bearing of its left edge, at the height of its centre.";
+    CameraRight: camera "right_deg", Degrees, Seen(-180.0, 180.0, 180.0), NoBeam, ViewNumber(|v| v.patch.right_deg), "The bearing of its right edge.";
+    CameraFloor: camera "floor_m", Metres, Seen(0.0, 100.0, 100.0), NoBeam, ViewNumber(|v| v.patch.floor_m), "The distance from the robot's centre to its lowest place, if that lies on flat floor.";
+    CameraLineSeen: camera "line_seen", NoUnit, Any, NoBeam, ViewFlag(|v| v.line.seen), "Whether the patch shows a line on the floor, 0.1 to 3 metres ahead.";
+    CameraLineOffset: camera "line_offset_m", Metres, Seen(-10.0, 10.0, 100.0), NoBeam, ViewNumber(|v| v.line.offset_m), "How far left of the robot's centre that line passes.";
+    CameraLineHeading: camera "line_heading_deg", Degrees, Seen(-90.0, 90.0, 180.0), NoBeam, ViewNumber(|v| v.line.heading_deg), "Where that line leads, positive to the left.";
     ActionIndex: action "index", Unit::Action, Actions, NoBeam, Whole(|f| f.action as i64), "Its number in the list of actions, from 0.";
     ActionLinear: action "linear", MetresPerSecond, Commanded, NoBeam, Number(|f| f.action_linear_m_per_s), "The forward speed that was commanded.";
     ActionAngular: action "angular", RadiansPerSecond, Commanded, NoBeam, Number(|f| f.action_angular_rad_per_s), "The turning speed that was commanded, positive to the left.";
@@ -154,9 +173,9 @@ impl Fact {
             Getter::Call(..) if matches!(self.id, FactId::LaserHit | FactId::LaserHitAt | FactId::StageAt) => {
                 "true or false"
             }
-            Getter::Number(_) | Getter::Sector(_) | Getter::Hits | Getter::Call(..) => "number",
-            Getter::Whole(_) => "whole number",
-            Getter::Flag(_) => "true or false",
+            Getter::Number(_) | Getter::ViewNumber(_) | Getter::Sector(_) | Getter::Hits | Getter::Call(..) => "number",
+            Getter::Whole(_) | Getter::ViewWhole(_) => "whole number",
+            Getter::Flag(_) | Getter::ViewFlag(_) => "true or false",
         }
     }
 
@@ -170,6 +189,23 @@ impl Fact {
 }
 
 impl FactId {
+    /// What must be found in a view's mask for it; nothing for most facts.
+    pub(crate) const fn look(self) -> Option<Look> {
+        match self {
+            Self::CameraSize
+            | Self::CameraBearing
+            | Self::CameraElevation
+            | Self::CameraOffset
+            | Self::CameraLeft
+            | Self::CameraRight
+            | Self::CameraFloor => Some(Look { patch: true, line: false }),
+            Self::CameraLineSeen | Self::CameraLineOffset | Self::CameraLineHeading => {
+                Some(Look { patch: true, line: true })
+            }
+            _ => None,
+        }
+    }
+
     /// Its row in the list.
     #[must_use]
     pub const fn fact(self) -> &'static Fact {

@@ -1,20 +1,15 @@
 //! Everything that a reward may read: measurements of one step, never the truth.
 
 use super::odometry::Odometry;
+use super::view_facts::ViewFacts;
 
 /// The measurements that rules and `fn reward(facts)` read, refilled in every step.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Facts {
     /// Laser ranges, metres, beam 0 rightmost.
     pub ranges_m: Vec<f32>,
-    /// Share of foreground pixels of the filtered image for each grid cell, row by row from the top left, 0 to 1.
-    pub cells: Vec<f32>,
-    /// Rows and columns of the grid.
-    pub grid: (usize, usize),
-    /// Whether any cell of the grid is occupied.
-    pub seen: bool,
-    /// Share of foreground pixels of the whole filtered image, 0 to 1.
-    pub coverage: f64,
+    /// What each view sees, the first one first.
+    pub views: Vec<ViewFacts>,
     /// The state that the grid was coded into.
     pub state: usize,
     /// Index of the action that was carried out.
@@ -119,11 +114,11 @@ impl Facts {
         self.ranges_m.iter().position(|&range| range == least).unwrap_or(0)
     }
 
-    /// The share of foreground pixels of one grid cell, 0 to 1; 0 if there is no such cell.
+    /// What a view sees; nothing for a view that there is not.
     #[must_use]
-    pub(super) fn cell(&self, row: usize, column: usize) -> f64 {
-        let inside = column < self.grid.1;
-        self.cells.get(row * self.grid.1 + column).filter(|_| inside).map_or(0.0, |&share| decimal(share))
+    pub(super) fn view(&self, view: usize) -> &ViewFacts {
+        static NOTHING: ViewFacts = ViewFacts::NOTHING;
+        self.views.get(view).unwrap_or(&NOTHING)
     }
 }
 
@@ -217,11 +212,5 @@ mod tests {
     #[test]
     fn the_excess_is_the_greatest_one() {
         assert_eq!(excess(&[1.0, 2.5, 1.0], &[1.0, 2.0, 3.0]), 0.5);
-    }
-
-    #[test]
-    fn a_cell_outside_the_grid_is_empty() {
-        let facts = Facts { cells: vec![0.5; 9], grid: (3, 3), ..Facts::default() };
-        assert_eq!((facts.cell(2, 2), facts.cell(0, 3), facts.cell(3, 0)), (0.5, 0.0, 0.0));
     }
 }

@@ -1,6 +1,6 @@
 //! One run's judging: refilled facts in, one judgement for each step out.
 
-use super::compiled::CompiledScript;
+use super::compiled::{CompiledScript, Look};
 use super::evaluate::{Judgement, Present};
 use super::explain;
 use super::expression::Slot;
@@ -67,7 +67,7 @@ impl Judge {
         let (previous, spent) = (Arc::clone(&facts), vec![false; needed.len()]);
         let present = Present { compiled, facts, previous, memory, calibrated, slots: Vec::new() };
         let (stage, odometry) = (StageNow::default(), Odometry::default());
-        let digits = if present.compiled.stages.is_empty() { Vec::new() } else { vec![0] };
+        let digits = vec![0; present.compiled.bins.len() + usize::from(!present.compiled.stages.is_empty())];
         Self {
             present,
             beams,
@@ -161,7 +161,7 @@ impl Judge {
             return Ok(());
         }
         self.is_past = true;
-        let Self { present, stage, odometry, period_s, .. } = self;
+        let Self { present, stage, odometry, period_s, digits, .. } = self;
         let facts = Arc::make_mut(&mut present.facts);
         facts.attempt_s = facts.since_recovery as f64 * *period_s;
         if !present.compiled.remembers() {
@@ -188,6 +188,9 @@ impl Judge {
             let sample = remembered.sample(present.inputs());
             present.memory.take(index, sample, remembered);
         }
+        for (digit, bins) in digits.iter_mut().zip(&compiled.bins) {
+            *digit = bins.digit(present.inputs());
+        }
         Ok(())
     }
 
@@ -205,7 +208,8 @@ impl Judge {
         self.stage.index
     }
 
-    /// The parts of the state that the script works out: the stage, if it has stages.
+    /// The parts of the state that the script works out: of each `bins` the number of the range, and last the stage, if it has
+    /// stages.
     #[must_use]
     pub fn digits(&self) -> &[usize] {
         &self.digits
@@ -220,6 +224,12 @@ impl Judge {
     #[must_use]
     pub fn remembers(&self) -> bool {
         self.present.compiled.remembers()
+    }
+
+    /// What the script reads of each view besides its grid.
+    #[must_use]
+    pub fn looks(&self) -> &[Look] {
+        &self.present.compiled.looks
     }
 
     fn rules(&mut self) -> Result<Judgement> {
@@ -326,7 +336,7 @@ impl Judge {
         if self.present.calibrated.is_none() {
             return wrong("the script has not been calibrated yet".to_owned()).fail();
         }
-        self.present.compiled.check_cells(self.present.facts.grid)
+        self.present.compiled.check_cells(|view| self.present.facts.view(view).grid)
     }
 
     pub(crate) fn present(&self) -> &Present {

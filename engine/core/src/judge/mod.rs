@@ -22,9 +22,11 @@ pub(crate) mod rule;
 pub(crate) mod running;
 pub(crate) mod sandbox;
 pub(crate) mod stopped;
+pub(crate) mod view_facts;
 pub(crate) mod views;
 pub(crate) mod withheld;
 
+pub use compiled::Look;
 pub use evaluate::Judgement;
 pub use expression::Comparison;
 pub use fact_columns::{Reach, Unit};
@@ -34,3 +36,4 @@ pub use judging::Judge;
 pub use odometry::Odometry;
 pub use readings::{FactRead, PartRead};
 pub use rule::RuleText;
+pub use view_facts::{LineFacts, PatchFacts, ViewFacts};

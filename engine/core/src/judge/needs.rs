@@ -1,5 +1,6 @@
 //! What native trees rely on: parts of what was calibrated, beams and cells that must exist.
 
+use super::compiled::Look;
 use rhai::Position;
 
 /// How a rule reads `calibrated`.
@@ -21,6 +22,17 @@ pub(crate) struct Needs {
     pub beams: Vec<(i64, Position)>,
     /// Stages that are named.
     pub stages: Vec<(String, Position)>,
-    /// Grid cells that are named: row, column.
-    pub cells: Vec<(i64, i64, Position)>,
+    /// What is read of the views besides their grids, by their numbers.
+    pub looks: Vec<Look>,
+    /// Grid cells that are named.
+    pub cells: Vec<CellNamed>,
+}
+
+/// A row, a column, or both, of a view's grid, as a script names them.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CellNamed {
+    pub view: usize,
+    pub row: Option<i64>,
+    pub column: Option<i64>,
+    pub position: Position,
 }

@@ -111,7 +111,7 @@ fn interval(number: &Number, limits: &Limits) -> Interval {
             Reach::Laser => (of(&limits.low), of(&limits.high)),
             reach => reach.bounds(),
         },
-        Number::Whole(_, fact) => fact.fact().reach.bounds(),
+        Number::Whole(_, fact) | Number::View(_, _, fact) | Number::ViewWhole(_, _, fact) => fact.fact().reach.bounds(),
         Number::CountBelow(..) => FactId::SectorCountBelow.fact().reach.bounds(),
         Number::Beam(beam) => limits.of_beams(*beam, *beam, |ranges_m| decimal(ranges_m[0])),
         Number::Sector(BeamSpan::Numbers(from, to), of) => limits.of_beams(*from, *to, of),

@@ -85,10 +85,10 @@ pub(crate) fn beam(parts: &[Part], inputs: StepFacts<'_>) -> Option<usize> {
 }
 
 impl Reading {
-    /// A fact that is read without arguments, by its whole name; nothing for others.
-    pub(crate) fn of_fact(fact: &Fact) -> Option<Self> {
-        let typed = Typed::of_fact(fact)?;
-        Some(Self { name: fact.name(), typed, id: Some(fact.id), look: BeamSought::of(fact.beam, ALL) })
+    /// A fact that is read without arguments, by its whole name, of this view if it is one of a view; nothing for others.
+    pub(crate) fn of_fact(fact: &Fact, name: String, view: usize) -> Option<Self> {
+        let typed = Typed::of_fact(fact, view)?;
+        Some(Self { name, typed, id: Some(fact.id), look: BeamSought::of(fact.beam, ALL) })
     }
 
     fn read(&self, inputs: StepFacts<'_>) -> Option<FactRead> {

@@ -129,7 +129,7 @@ fn wrong_types(source: &SourceText, position: Position, signature: &str) -> Diag
 fn no_part(source: &SourceText, position: Position, message: &str) -> Diagnostic {
     let mut quoted = message.split('\'').skip(1).step_by(2);
     match (quoted.next(), quoted.next()) {
-        (Some(key), Some(group)) if !names_in(group).is_empty() => unknown_fact(source, position, group, key),
+        (Some(key), Some(group)) if !names_in(group).is_empty() => unknown_fact(source, position, (group, group), key),
         (Some(key), Some(kind)) => {
             let message = format!("{} has nothing called '{}'", plain_kind(kind), printable(key));
             mistake(source, "E-SCRIPT-FACT", position, message, "here")

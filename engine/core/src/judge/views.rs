@@ -3,6 +3,7 @@
 use super::fact_columns::Getter;
 use super::fact_table::FACTS;
 use super::facts::{self, Facts};
+use super::view_facts::ViewFacts;
 use rhai::{Dynamic, Engine, EvalAltResult, Position, Variant};
 use std::sync::Arc;
 
@@ -40,9 +41,10 @@ macro_rules! views {
             engine.register_get("previous", |all: &mut AllFacts| PreviousView::new(Arc::clone(&all.previous)));
             $(register_group::<$name>(engine);)*
             $(engine.register_get($group, |before: &mut PreviousView| $name::new(Arc::clone(&before.0)));)*
+            register_seen(engine);
         }
 
-        /// The group of this name over these measurements, as a script's value.
+        /// The group of this name over these measurements, as a script's value; nothing for the name of a view.
         pub(crate) fn view(group: &str, facts: &Arc<Facts>) -> Dynamic {
             match group {
                 $($group => Dynamic::from($name::new(Arc::clone(facts))),)*
@@ -55,8 +57,6 @@ macro_rules! views {
 views! {
     /// `laser`
     LaserView "laser",
-    /// `camera`
-    CameraView "camera",
     /// `action`
     ActionView "action",
     /// `robot`
@@ -83,8 +83,13 @@ pub(crate) struct AllFacts {
     pub measures: Arc<Vec<Dynamic>>,
 }
 
-/// Makes the measures of a script known to its functions, as `facts.NAME`, and the names of its stages to all of it.
-pub(crate) fn register_own(engine: &mut Engine, measures: &[&str], stages: &[String]) {
+/// Makes the measures and the views of a script known to its functions, as `facts.NAME`, and the names of its stages to all of
+/// it.
+pub(crate) fn register_own(engine: &mut Engine, measures: &[&str], views: &[String], stages: &[String]) {
+    for (view, name) in views.iter().enumerate() {
+        engine.register_get(name, move |all: &mut AllFacts| SeenView { facts: Arc::clone(&all.facts), view });
+        engine.register_get(name, move |before: &mut PreviousView| SeenView { facts: Arc::clone(&before.0), view });
+    }
     for (index, name) in measures.iter().enumerate() {
         engine.register_get(*name, move |all: &mut AllFacts| all.measures.get(index).cloned().unwrap_or_default());
     }
@@ -94,6 +99,53 @@ pub(crate) fn register_own(engine: &mut Engine, measures: &[&str], stages: &[Str
         let index = index.ok_or_else(|| fault(format!("there is no stage \"{name}\"")))?;
         Ok(stage.0.stage.index == index)
     });
+}
+
+/// What one view sees: `camera`, or a view's own name.
+#[derive(Clone)]
+pub(crate) struct SeenView {
+    pub facts: Arc<Facts>,
+    pub view: usize,
+}
+
+impl SeenView {
+    fn seen(&self) -> &ViewFacts {
+        self.facts.view(self.view)
+    }
+}
+
+fn register_seen(engine: &mut Engine) {
+    engine.register_type_with_name::<SeenView>("camera");
+    for fact in FACTS {
+        match fact.get {
+            Getter::ViewNumber(get) => engine.register_get(fact.key, move |view: &mut SeenView| get(view.seen())),
+            Getter::ViewWhole(get) => engine.register_get(fact.key, move |view: &mut SeenView| get(view.seen())),
+            Getter::ViewFlag(get) => engine.register_get(fact.key, move |view: &mut SeenView| get(view.seen())),
+            _ => continue,
+        };
+    }
+    engine.register_fn("cell", |view: &mut SeenView, row: i64, column: i64| -> Evaluated<f64> {
+        let (rows, columns) = view.seen().grid;
+        let row = index(row, rows, "row numbers")?;
+        Ok(view.seen().cell(row, index(column, columns, "column numbers")?))
+    });
+    engine.register_fn("rows", |view: &mut SeenView, from: i64, to: i64| -> Evaluated<f64> {
+        let (from, to) = band(from, to, view.seen().grid.0, "row")?;
+        Ok(view.seen().rows(from, to))
+    });
+    engine.register_fn("columns", |view: &mut SeenView, from: i64, to: i64| -> Evaluated<f64> {
+        let (from, to) = band(from, to, view.seen().grid.1, "column")?;
+        Ok(view.seen().columns(from, to))
+    });
+}
+
+fn band(from: i64, to: i64, count: usize, what: &str) -> Evaluated<(usize, usize)> {
+    let numbers = format!("{what} numbers");
+    let (from, to) = (index(from, count, &numbers)?, index(to, count, &numbers)?);
+    if from > to {
+        return Err(fault(format!("the lower {what} comes first, found {from} to {to}")));
+    }
+    Ok((from, to))
 }
 
 /// `laser.sector(from, to)`.
@@ -118,11 +170,6 @@ pub(crate) fn register(engine: &mut Engine) {
     register_groups(engine);
     register_laser(engine);
     register_sector(engine);
-    engine.register_fn("cell", |camera: &mut CameraView, row: i64, column: i64| -> Evaluated<f64> {
-        let (rows, columns) = camera.0.grid;
-        let row = index(row, rows, "row numbers")?;
-        Ok(camera.0.cell(row, index(column, columns, "column numbers")?))
-    });
 }
 
 fn register_group<T: FactView>(engine: &mut Engine) {
@@ -135,7 +182,7 @@ fn register_group<T: FactView>(engine: &mut Engine) {
             Getter::Number(get) => engine.register_get(fact.key, move |view: &mut T| get(view.facts())),
             Getter::Whole(get) => engine.register_get(fact.key, move |view: &mut T| get(view.facts())),
             Getter::Flag(get) => engine.register_get(fact.key, move |view: &mut T| get(view.facts())),
-            Getter::Sector(_) | Getter::Hits | Getter::Call(..) => continue,
+            _ => continue,
         };
     }
 }
@@ -241,6 +288,7 @@ mod tests {
 
     #[test]
     fn every_group_of_facts_can_be_seen() {
-        assert!(GROUPS.iter().all(|(group, _)| !view(group, &Arc::default()).is_unit()));
+        let groups = GROUPS.iter().filter(|(group, _)| *group != "camera");
+        assert!(groups.into_iter().all(|(group, _)| !view(group, &Arc::default()).is_unit()));
     }
 }

@@ -5,9 +5,8 @@ use super::outline::{BeamLoop, Gathers, ScriptOutline, UnusedName};
 use super::positions::body_end;
 use super::reader::{Local, OutlineReader};
 use super::source::Code;
-use super::syntax::is_rule_expr;
+use super::syntax::is_success_expr;
 use super::syntax::written_rules;
-use crate::judge::fact_table::is_group;
 use crate::judge::rule::CompiledRule;
 use rhai::{AST, ASTNode, Expr, Scope, Stmt};
 use std::collections::{BTreeMap, BTreeSet};
@@ -48,7 +47,7 @@ fn read(reader: &OutlineReader<'_>, ast: &AST, outline: &mut ScriptOutline) {
         if let Some(ASTNode::Expr(expr)) = path.last() {
             outline.comparisons.extend(reader.compared(expr, &local));
             if judges {
-                groups.extend(group(expr));
+                groups.extend(group(reader.code, expr));
                 outline.reward_recovers |= recovers(expr);
             }
         }
@@ -62,14 +61,15 @@ fn read(reader: &OutlineReader<'_>, ast: &AST, outline: &mut ScriptOutline) {
     });
     let statements = ast.clone_statements_only();
     statements.walk(&mut |path: &[ASTNode<'_>]| {
-        let in_rule = path.iter().any(|node| matches!(node, ASTNode::Expr(expr) if is_rule_expr(expr)));
+        let read = |expr: &Expr| matches!(expr, Expr::Custom(..)) && !is_success_expr(expr);
+        let in_rule = path.iter().any(|node| matches!(node, ASTNode::Expr(expr) if read(expr)));
         if let Some(ASTNode::Expr(Expr::FnCall(call, _))) = path.last()
             && let ("fired" | "since", [Expr::StringConstant(rule, _)]) = (call.name.as_str(), call.args.as_slice())
         {
             outline.remembered.push(rule.to_string());
         }
         if let (true, Some(ASTNode::Expr(expr))) = (in_rule, path.last()) {
-            groups.extend(group(expr));
+            groups.extend(group(reader.code, expr));
         }
         true
     });
@@ -143,17 +143,17 @@ fn locals(reader: &OutlineReader<'_>, bodies: &AST, functions: &[OwnFunction]) -
 }
 
 /// The group of facts that an expression reads.
-fn group(expr: &Expr) -> Option<String> {
+fn group(code: &Code, expr: &Expr) -> Option<String> {
     if !matches!(expr, Expr::Dot(..) | Expr::Index(..) | Expr::Variable(..)) {
         return None;
     }
     let access = Access::of(expr)?;
-    match access.links.first() {
-        _ if is_group(access.root) => Some(access.root.to_owned()),
-        Some(Link::Property(group, _)) if is_group(group) => Some((*group).to_owned()),
+    let of_first = || match access.links.first() {
+        Some(Link::Property(group, _)) => code.views.group_of(group),
         // Facts handed to another function as a whole are told apart there.
         _ => None,
-    }
+    };
+    code.views.group_of(access.root).or_else(of_first).map(str::to_owned)
 }
 
 /// Whether it is a map that asks for recovery.

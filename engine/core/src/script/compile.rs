@@ -1,9 +1,7 @@
 //! From the script's tree to a native one; what is not understood stays with the interpreter.
 
 use super::access::{Access, Link};
-use crate::judge::expression::{Arithmetic, BeamSpan, Comparison, Flag, Number, Typed};
-use crate::judge::fact_columns::Getter;
-use crate::judge::fact_table::{FactId, value};
+use crate::judge::expression::{Arithmetic, Comparison, Flag, Number, Typed};
 use crate::judge::functions::{OF_ONE, OF_ONE_FRACTION, OF_TWO, OF_TWO_FRACTION, OneArgument, TwoArguments, WINDOWS};
 use crate::judge::memory::Remembered;
 use crate::judge::needs::{Needs, SlotUse};
@@ -27,13 +25,15 @@ pub(super) struct Vocabulary {
     pub windows: Vec<(Position, usize)>,
     /// The rules' names in their order, and last `reward` if there is `fn reward`.
     pub rules: Vec<String>,
+    /// The names of the views, the first one first.
+    pub views: Vec<String>,
     pub stages: Vec<String>,
     /// Names of functions that the script defines itself.
     pub own: Vec<String>,
 }
 
 impl Vocabulary {
-    fn measure(&self, name: &str) -> Option<(usize, &Typed)> {
+    pub(super) fn measure(&self, name: &str) -> Option<(usize, &Typed)> {
         self.remembered.iter().enumerate().find_map(|(index, remembered)| match remembered {
             Remembered::Measure(measure) if measure.name == name => Some((index, &measure.typed)),
             _ => None,
@@ -84,7 +84,7 @@ impl Compiler<'_> {
         }
     }
 
-    fn number(&mut self, expr: &Expr) -> Option<Number> {
+    pub(super) fn number(&mut self, expr: &Expr) -> Option<Number> {
         number(self.expression(expr)?)
     }
 
@@ -107,7 +107,7 @@ impl Compiler<'_> {
         }
     }
 
-    fn calibrated(&mut self, key: String, length: Option<usize>, position: Position) -> Number {
+    pub(super) fn calibrated(&mut self, key: String, length: Option<usize>, position: Position) -> Number {
         let slots = &mut self.needs.slots;
         let slot = slots.iter().position(|known| *known == key).unwrap_or_else(|| {
             slots.push(key);
@@ -118,7 +118,7 @@ impl Compiler<'_> {
     }
 
     /// `calibrated` or `calibrated.key`.
-    fn calibrated_key(access: &Access<'_>) -> Option<String> {
+    pub(super) fn calibrated_key(access: &Access<'_>) -> Option<String> {
         match access.group()? {
             ("calibrated", []) => Some(String::new()),
             ("calibrated", [Link::Property(key, _)]) => Some((*key).to_owned()),
@@ -133,113 +133,6 @@ impl Compiler<'_> {
         }
         let (group, links) = access.group()?;
         self.of_group(group, links)
-    }
-
-    fn of_group(&mut self, group: &str, links: &[Link<'_>]) -> Option<Typed> {
-        match (group, links) {
-            ("previous", [Link::Property(group, _), rest @ ..]) => match self.of_group(group, rest)? {
-                Typed::Number(number) => Some(Typed::Number(Number::Before(Box::new(number)))),
-                Typed::Whole(number) => Some(Typed::Whole(Number::Before(Box::new(number)))),
-                Typed::Flag(flag) => Some(Typed::Flag(Flag::Before(Box::new(flag)))),
-            },
-            (name, []) if let Some((index, typed)) = self.script.measure(name) => Some(remembered(index, typed)),
-            (_, [Link::Property(key, _)]) => Typed::of_fact(value(group, key)?),
-            ("stage", [Link::Call(call, _)]) if call.name == "at" => {
-                let [Expr::StringConstant(name, _)] = call.args.as_slice() else { return None };
-                let stage = self.script.stages.iter().position(|stage| stage == name.as_str())?;
-                Some(Typed::Flag(Flag::Stage(stage)))
-            }
-            ("laser", [Link::Call(call, _)]) if let [of] = call.args.as_slice() => match call.name.as_str() {
-                "at" => Some(Typed::Number(Number::BeamAt(self.constant(of)?))),
-                "hit_at" => Some(Typed::Flag(Flag::HitAt(self.constant(of)?))),
-                "hit" => Some(Typed::Flag(Flag::Hit(self.beam(of)?))),
-                _ => None,
-            },
-            ("laser", [Link::Index(beam)]) => Some(Typed::Number(Number::Beam(self.beam(beam)?))),
-            ("camera", [Link::Call(call, _)]) if call.name == "cell" && call.args.len() == 2 => {
-                let (row, column) = (self.constant_whole(&call.args[0])?, self.constant_whole(&call.args[1])?);
-                self.needs.cells.push((row, column, call.args[0].start_position()));
-                Some(Typed::Number(Number::Cell(usize::try_from(row).ok()?, usize::try_from(column).ok()?)))
-            }
-            ("laser", [Link::Call(call, _), rest]) => {
-                let span = self.sector(call)?;
-                self.sector_fact(span, *rest)
-            }
-            _ => None,
-        }
-    }
-
-    pub(super) fn sector(&mut self, call: &FnCallExpr) -> Option<BeamSpan> {
-        let [from, to] = call.args.as_slice() else { return None };
-        match call.name.as_str() {
-            "sector" => {
-                let (from, to) = (self.beam(from)?, self.beam(to)?);
-                (from <= to).then_some(BeamSpan::Numbers(from, to))
-            }
-            "between" => {
-                let (from, to) = (self.constant(from)?, self.constant(to)?);
-                (from < to).then_some(BeamSpan::Bearings(from, to))
-            }
-            _ => None,
-        }
-    }
-
-    fn sector_fact(&mut self, span: BeamSpan, link: Link<'_>) -> Option<Typed> {
-        match link {
-            Link::Property(key, _) => match value("sector", key)?.get {
-                Getter::Sector(get) => Some(Typed::Number(Number::Sector(span, get))),
-                Getter::Hits => Some(Typed::Whole(Number::Hits(span))),
-                _ => None,
-            },
-            Link::Call(call, _) if call.args.len() == 1 => match call.name.as_str() {
-                "count_below" => {
-                    let limit = self.number(&call.args[0])?;
-                    Some(Typed::Whole(Number::CountBelow(span, Box::new(limit))))
-                }
-                "excess" => {
-                    let BeamSpan::Numbers(from, to) = span else { return None };
-                    let slot = self.expected(from, to, call)?;
-                    Some(Typed::Number(Number::Excess(from, to, slot)))
-                }
-                _ => None,
-            },
-            _ => None,
-        }
-    }
-
-    /// Where `excess(calibrated)` finds its expected ranges.
-    pub(super) fn expected(&mut self, from: usize, to: usize, call: &FnCallExpr) -> Option<usize> {
-        let access = Access::of(call.args.first()?)?;
-        let key = Self::calibrated_key(&access)?;
-        match self.calibrated(key, Some(to - from + 1), access.position) {
-            Number::Calibrated(slot) => Some(slot),
-            _ => None,
-        }
-    }
-
-    /// A constant number.
-    pub(super) fn constant(&mut self, expr: &Expr) -> Option<f64> {
-        match self.expression(expr)? {
-            Typed::Number(Number::Constant(value)) | Typed::Whole(Number::Constant(value)) => Some(value),
-            Typed::Number(Number::Negate(of)) => match *of {
-                Number::Constant(value) => Some(-value),
-                _ => None,
-            },
-            _ => None,
-        }
-    }
-
-    fn constant_whole(&mut self, expr: &Expr) -> Option<i64> {
-        match self.expression(expr)? {
-            Typed::Whole(Number::Constant(value)) => Some(value as i64),
-            _ => None,
-        }
-    }
-
-    pub(super) fn beam(&mut self, expr: &Expr) -> Option<usize> {
-        let beam = self.constant_whole(expr)?;
-        self.needs.beams.push((beam, expr.start_position()));
-        usize::try_from(beam).ok()
     }
 
     fn call(&mut self, call: &FnCallExpr, position: Position) -> Option<Typed> {
@@ -350,33 +243,17 @@ impl Compiler<'_> {
             _ => None,
         }
     }
-
-    /// A number; or the laser or a sector, which stand for their nearest range.
-    pub(super) fn range(&mut self, expr: &Expr) -> Option<Number> {
-        let access = Access::of(expr);
-        match access.as_ref().and_then(Access::group) {
-            Some(("laser", [])) => number(Typed::of_fact(FactId::LaserNearest.fact())?),
-            Some(("laser", [Link::Call(call, _)])) => {
-                let span = self.sector(call)?;
-                match FactId::SectorNearest.fact().get {
-                    Getter::Sector(get) => Some(Number::Sector(span, get)),
-                    _ => None,
-                }
-            }
-            _ => self.number(expr),
-        }
-    }
 }
 
 /// What was worked out for a measure.
-fn remembered(index: usize, typed: &Typed) -> Typed {
+pub(super) fn remembered(index: usize, typed: &Typed) -> Typed {
     match typed {
         Typed::Flag(_) => Typed::Flag(Flag::Remembered(index)),
         Typed::Number(_) | Typed::Whole(_) => Typed::Number(Number::Remembered(index)),
     }
 }
 
-fn number(typed: Typed) -> Option<Number> {
+pub(super) fn number(typed: Typed) -> Option<Number> {
     match typed {
         Typed::Number(number) | Typed::Whole(number) => Some(number),
         Typed::Flag(_) => None,

@@ -8,12 +8,14 @@ use super::rules::{rules, stage};
 use super::setup::{self, Log, SetUp};
 use super::source::{self, Code};
 use super::spoilt::Spoilt;
+use super::state_parts::WrittenBins;
 use super::success::FigureNames;
 use super::syntax::{Forms, written_rules};
 use super::tree::{Tree, tree};
 use super::unread::Unread;
-use super::{measures, memory, names, parts, rehearsal, stops, success, syntax, top_level, types};
+use super::{measures, memory, names, parts, rehearsal, state_parts, stops, success, syntax, top_level, types};
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, printable};
+use crate::judge::Look;
 use crate::judge::compiled::CompiledScript;
 use crate::judge::needs::Needs;
 use crate::judge::sandbox;
@@ -78,6 +80,7 @@ impl Draft {
         let mut spoilt = Spoilt::new(code, &tree);
         spoilt.spread(mistakes);
         let before = mistakes.count();
+        code.views.check(code, &tree.known.variables, mistakes);
         let undefined = names::check_names(code, &tree, &spoilt, &mut needs, mistakes);
         undefined.into_iter().for_each(|name| spoilt.insert(name));
         memory::check_memory(code, &tree.ast, mistakes);
@@ -90,10 +93,10 @@ impl Draft {
         let constants = top_level::run(&engine, code, &tree, &log, &mut spoilt, mistakes)?;
         spoilt.spread(mistakes);
         let calls = spoilt.setup_calls(mistakes);
-        let SetUp { settings, places, mut unread } = setup::finish(&log, code, &tree.ast, mistakes);
+        let SetUp { settings, places, mut unread, bins } = setup::finish(&log, code, &tree.ast, mistakes);
         calls.into_iter().for_each(|call| unread.all_of(call));
         engine.register_global_module(constants_module(&constants).into());
-        let read = ReadScript { code, tree, engine, constants, settings: &settings, needs };
+        let read = ReadScript { code, tree, engine, constants, settings: &settings, needs, bins };
         let (compiled, outline, success) = read.compile(&spoilt, mistakes)?;
         let behaviour = Behaviour::new(name, settings, places, outline, compiled).with_success(success);
         check_with_settings(&behaviour, &mut spoilt, &unread, mistakes)?;
@@ -109,6 +112,7 @@ struct ReadScript<'a> {
     constants: Scope<'static>,
     settings: &'a Settings,
     needs: Needs,
+    bins: Vec<WrittenBins>,
 }
 
 impl ReadScript<'_> {
@@ -118,12 +122,13 @@ impl ReadScript<'_> {
         spoilt: &Spoilt<'_>,
         mistakes: &mut Mistakes,
     ) -> std::result::Result<(CompiledScript, ScriptOutline, Vec<SuccessCondition>), Diagnostic> {
-        let Self { code, tree, mut engine, constants, settings, mut needs } = self;
-        let mut script = vocabulary(&tree, settings);
+        let Self { code, tree, mut engine, constants, settings, mut needs, bins } = self;
+        let mut script = vocabulary(code, &tree, settings);
         check_stages(code, &needs, &script.stages, mistakes);
         measures::check_windows(code, &tree.ast, &script.rules, &script.own, mistakes);
         let mut compiler = Compiler { constants: &constants, needs: &mut needs, script: &mut script };
         measures::measures(code, &tree.ast, &tree.known.variables, &mut compiler, spoilt, mistakes);
+        let bins = state_parts::bins(code, &tree.ast, &bins, &mut compiler, spoilt, mistakes);
         let rules = rules(code, &tree.ast, &mut compiler, spoilt, mistakes);
         let reward_name = has_function(&tree.ast, "reward").then_some("reward");
         let names = FigureNames {
@@ -140,8 +145,9 @@ impl ReadScript<'_> {
         let mut compiler = Compiler { constants: &constants, needs: &mut needs, script: &mut script };
         let reward_parts =
             reward.as_ref().map_or_else(Vec::new, |span| parts::function_parts(code, &tree.ast, span, &mut compiler));
-        let Vocabulary { remembered, stages, .. } = script;
-        register_own(&mut engine, &tree.known.measures.iter().map(String::as_str).collect::<Vec<_>>(), &stages);
+        let Vocabulary { remembered, views, stages, .. } = script;
+        let measures: Vec<&str> = tree.known.measures.iter().map(String::as_str).collect();
+        register_own(&mut engine, &measures, &views, &stages);
         let outline = match mistakes.is_empty() {
             true => outline_of(code, &tree.ast, &constants, &rules),
             false => ScriptOutline::default(),
@@ -155,8 +161,11 @@ impl ReadScript<'_> {
             ast,
             constants,
             rules,
+            looks: looks(&needs, views.len()),
             needs,
             remembered,
+            views,
+            bins,
             stages,
             counts_way,
             looks_back,
@@ -195,13 +204,17 @@ fn check_with_settings(
     unread: &Unread,
     mistakes: &mut Mistakes,
 ) -> std::result::Result<(), Diagnostic> {
-    let (Settings { run, laser, grid, .. }, compiled) = (behaviour.settings(), behaviour.compiled());
+    let (settings @ Settings { run, laser, .. }, compiled) = (behaviour.settings(), behaviour.compiled());
     let beams = laser.beams as usize;
     if !unread.has("laser", "beams") {
         mistakes.take(compiled.check_beams(beams));
     }
-    if !unread.has("grid", "rows") && !unread.has("grid", "columns") {
-        mistakes.take(compiled.check_cells((grid.rows as usize, grid.columns as usize)));
+    if !unread.has("grid", "rows") && !unread.has("grid", "columns") && !unread.any_of("view") {
+        // A view that could not be read has any cell.
+        mistakes.take(compiled.check_cells(|view| {
+            let grid = settings.views().nth(view).map(|view| &view.grid);
+            grid.map_or((usize::MAX, usize::MAX), |grid| (grid.rows as usize, grid.columns as usize))
+        }));
     }
     if !unread.any_of("laser") {
         behaviour.find_unreachable(laser, f64::INFINITY, mistakes);
@@ -216,15 +229,21 @@ fn check_with_settings(
 }
 
 /// What a script names besides facts and constants.
-fn vocabulary(tree: &Tree, settings: &Settings) -> Vocabulary {
+fn vocabulary(code: &Code, tree: &Tree, settings: &Settings) -> Vocabulary {
     let written = written_rules(tree.ast.statements());
     let rules = written.iter().map(|rule| rule.name.to_owned());
     Vocabulary {
         rules: rules.chain(has_function(&tree.ast, "reward").then(|| "reward".to_owned())).collect(),
+        views: code.views.all(),
         stages: settings.stages.clone(),
         own: tree.ast.iter_functions().map(|function| function.name.to_owned()).collect(),
         ..Vocabulary::default()
     }
+}
+
+/// What is read of each view besides its grid.
+fn looks(needs: &Needs, views: usize) -> Vec<Look> {
+    (0..views).map(|view| needs.looks.get(view).copied().unwrap_or_default()).collect()
 }
 
 /// Checks that every stage that is named exists.

@@ -1,16 +1,24 @@
 //! The names behind a group of facts: whether there is such a fact, how it is read, and which beams, cells and stages it names.
 
-use super::access::Link;
+use super::access::{Access, Link};
 use super::names::Names;
+use super::source::Code;
+use crate::diagnostic::Diagnostic;
+use crate::judge::Look;
 use crate::judge::explain;
-use crate::judge::fact_table::{self, Fact, is_group, value};
+use crate::judge::fact_table::{self, Fact, value};
+use crate::judge::needs::CellNamed;
+use crate::settings::UNNAMED_VIEW;
 use rhai::{Expr, FnCallExpr, Position};
 
 impl Names<'_> {
     pub(super) fn no_group(&mut self, name: &str, position: Position) {
         let source = &self.code.source;
         if self.mistakes.wants(source, explain::offset(source, position)) {
-            self.mistakes.add(explain::unknown_group(source, position, name));
+            self.mistakes.add(match name {
+                UNNAMED_VIEW => no_unnamed_view(self.code, position),
+                name => explain::unknown_group(source, position, name),
+            });
         }
     }
 
@@ -22,7 +30,7 @@ impl Names<'_> {
                     let help = "name it: measure m = ...; change(m) is how much it changed since the step before";
                     self.mistake("E-SCRIPT-FACT", *position, message, "not known", help);
                 }
-                inner if is_group(inner) => self.group(inner, rest),
+                inner if self.is_group(inner) => self.group(inner, rest),
                 inner => self.no_group(inner, *position),
             },
             [] if group == "previous" => {}
@@ -34,9 +42,38 @@ impl Names<'_> {
                     self.sector(next);
                 }
             }
-            [Link::Property(key, position), ..] if value(group, key).is_none() => self.no_fact(group, key, *position),
+            [Link::Property(key, position), ..] => match value(self.row_group(group), key) {
+                None => self.no_fact(group, key, *position),
+                Some(fact) => self.look(self.code.views.index(group), fact),
+            },
             _ => {}
         }
+    }
+
+    /// A view in a variable of a function: which one is not known, so that it may be any.
+    pub(super) fn look_anywhere(&mut self, access: &Access<'_>) {
+        for link in &access.links {
+            if let Link::Property(key, _) = link
+                && let Some(fact) = value(UNNAMED_VIEW, key)
+            {
+                (0..self.code.views.all().len()).for_each(|view| self.look(Some(view), fact));
+            }
+        }
+    }
+
+    /// The group in the list of facts: that of the views for the name of one.
+    fn row_group<'b>(&self, group: &'b str) -> &'b str {
+        self.code.views.group_of(group).unwrap_or(group)
+    }
+
+    /// Notes what a fact of a view needs to have found in its mask.
+    fn look(&mut self, view: Option<usize>, fact: &Fact) {
+        let (Some(view), Some(wanted)) = (view, fact.id.look()) else { return };
+        if self.needs.looks.len() <= view {
+            self.needs.looks.resize_with(view + 1, Look::default);
+        }
+        let look = &mut self.needs.looks[view];
+        (look.patch, look.line) = (look.patch || wanted.patch, look.line || wanted.line);
     }
 
     fn sector(&mut self, link: &Link<'_>) {
@@ -50,7 +87,7 @@ impl Names<'_> {
     }
 
     fn no_fact(&mut self, group: &str, key: &str, position: Position) {
-        match fact_table::call(group, key).and_then(Fact::form) {
+        match fact_table::call(self.row_group(group), key).and_then(Fact::form) {
             Some((form, _)) => {
                 let message = format!("'{key}' needs arguments");
                 self.mistake("E-SCRIPT-FACT", position, message, "here", format!("write {form}"));
@@ -62,14 +99,14 @@ impl Names<'_> {
     fn unknown_fact(&mut self, group: &str, key: &str, position: Position) {
         let source = &self.code.source;
         if self.mistakes.wants(source, explain::offset(source, position)) {
-            self.mistakes.add(explain::unknown_fact(source, position, group, key));
+            self.mistakes.add(explain::unknown_fact(source, position, (group, self.row_group(group)), key));
         }
     }
 
     fn call_of_facts(&mut self, group: &str, call: &FnCallExpr, position: Position) {
         let name = call.name.as_str();
-        match fact_table::call(group, name).and_then(Fact::form) {
-            None if value(group, name).is_some() => {
+        match fact_table::call(self.row_group(group), name).and_then(Fact::form) {
+            None if value(self.row_group(group), name).is_some() => {
                 let message = format!("'{group}.{name}' is a value, not a function");
                 self.mistake("E-SCRIPT-FACT", position, message, "here", format!("write {group}.{name}"));
             }
@@ -82,9 +119,14 @@ impl Names<'_> {
                 self.mistake("E-SCRIPT-FACT", position, message, "here", format!("write {form}"));
             }
             Some(_) if matches!(name, "sector" | "hit") => call.args.iter().for_each(|beam| self.beam(beam)),
-            Some(_) if name == "cell" => {
-                if let [Expr::IntegerConstant(row, at), Expr::IntegerConstant(column, _)] = call.args.as_slice() {
-                    self.needs.cells.push((*row, *column, *at));
+            Some(_) if matches!(name, "cell" | "rows" | "columns") => {
+                let view = self.code.views.index(group).unwrap_or(0);
+                let whole = |argument: &Expr| match argument {
+                    Expr::IntegerConstant(number, _) => Some(*number),
+                    _ => None,
+                };
+                if let Some(position) = call.args.first().map(Expr::start_position) {
+                    self.needs.cells.extend(cells_named(view, name, call.args.iter().map(whole), position));
                 }
             }
             Some(_) => {}
@@ -104,4 +146,31 @@ impl Names<'_> {
             self.needs.beams.push((*number, *position));
         }
     }
+}
+
+/// The rows and columns that a call with these arguments names.
+pub(super) fn cells_named(
+    view: usize,
+    name: &str,
+    arguments: impl Iterator<Item = Option<i64>>,
+    position: Position,
+) -> Vec<CellNamed> {
+    let numbers: Vec<Option<i64>> = arguments.collect();
+    let named = |row, column| CellNamed { view, row, column, position };
+    match (name, numbers.as_slice()) {
+        ("cell", [row, column]) => vec![named(*row, *column)],
+        ("rows", rows) => rows.iter().map(|row| named(*row, None)).collect(),
+        (_, columns) => columns.iter().map(|column| named(None, *column)).collect(),
+    }
+}
+
+/// A script that names its views has none without a name, unless it calls `filter` or `grid` by itself.
+fn no_unnamed_view(code: &Code, position: Position) -> Diagnostic {
+    let views = code.views.all();
+    let message = "this script has no view without a name".to_owned();
+    let help = match views.first() {
+        Some(first) => format!("write {first}.seen; its views are: {}", views.join(", ")),
+        None => String::new(),
+    };
+    explain::mistake(&code.source, "E-SCRIPT-VIEW", position, message, "which view?").help(help)
 }

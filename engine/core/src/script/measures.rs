@@ -63,7 +63,10 @@ fn misnamed(code: &Code, measure: &WrittenMeasure<'_>, known: &[&str], variables
     let name = measure.name;
     let message = match () {
         () if known.contains(&name) => format!("there are two measures called '{name}'"),
-        () if is_group(name) || matches!(name, "facts" | "calibrated" | "test" | "untrained") => {
+        () if is_group(name)
+            || code.views.group_of(name).is_some()
+            || matches!(name, "facts" | "calibrated" | "test" | "untrained") =>
+        {
             format!("'{name}' is the name of facts")
         }
         () if variables.iter().any(|variable| variable == name) => format!("there is a variable called '{name}'"),

@@ -4,12 +4,13 @@ use super::access::{Access, Link, fact_of};
 use super::setup_table::SETUP;
 use super::source::Code;
 use super::spoilt::Spoilt;
+use super::state_parts::is_bins_expr;
 use super::syntax::{Forms, is_measure_expr, is_success_expr};
 use super::tree::Tree;
 use super::unknown::Unknown;
 use crate::diagnostic::{Diagnostic, Mistakes};
 use crate::judge::explain;
-use crate::judge::fact_table::{is_group, takes_arguments};
+use crate::judge::fact_table::takes_arguments;
 use crate::judge::functions::{FUNCTIONS, WINDOWS};
 use crate::judge::needs::Needs;
 use rhai::{AST, ASTNode, Expr, FnCallExpr, Position, Stmt};
@@ -65,6 +66,20 @@ pub(super) fn check_names(
     names.walk(&ast.clone_functions_only());
     let functions: Vec<String> = names.own.into_iter().map(|(name, _)| name).collect();
     names.unknown.tell(code, &tree.known.variables, &functions, mistakes)
+}
+
+/// Whether a form stands where it may: at the top level by itself; `bins` as an argument of `state` there.
+fn stands_well(path: &[ASTNode<'_>], depth: usize) -> bool {
+    let is_state = |call: &FnCallExpr| call.name == "state";
+    match (&path[..depth], &path[depth]) {
+        (above, ASTNode::Expr(expr)) if is_bins_expr(expr) => match above {
+            [ASTNode::Stmt(Stmt::FnCall(call, _))] | [ASTNode::Stmt(_), ASTNode::Expr(Expr::FnCall(call, _))] => {
+                is_state(call)
+            }
+            _ => false,
+        },
+        (above, _) => above.len() == 1,
+    }
 }
 
 pub(super) struct Names<'a> {
@@ -128,11 +143,15 @@ impl Names<'_> {
 
     fn node(&mut self, path: &[ASTNode<'_>]) {
         let form = path.iter().position(|node| matches!(node, ASTNode::Expr(Expr::Custom(..))));
-        let (in_rule, misplaced) = (form.is_some(), form.is_some_and(|depth| self.in_function || depth != 1));
+        let misplaced = form.is_some_and(|depth| self.in_function || !stands_well(path, depth));
+        let in_rule = form.is_some();
         let success = path.iter().any(|node| matches!(node, ASTNode::Expr(expr) if is_success_expr(expr)));
         match path.last() {
             Some(ASTNode::Expr(Expr::Custom(_, position))) if misplaced => {
                 let measure = matches!(path.last(), Some(ASTNode::Expr(expr)) if is_measure_expr(expr));
+                if matches!(path.last(), Some(ASTNode::Expr(expr)) if is_bins_expr(expr)) {
+                    return self.bins_elsewhere(*position);
+                }
                 let what = match (success, measure) {
                     (true, _) => "a condition of success",
                     (_, true) => "a measure",
@@ -162,6 +181,11 @@ impl Names<'_> {
         }
     }
 
+    fn bins_elsewhere(&mut self, position: Position) {
+        let message = "bins stands inside state(...)".to_owned();
+        self.mistake("E-SCRIPT-RULE", position, message, "found here", "write state(bins(laser.front, [0.5, 1.0]));");
+    }
+
     fn is_given_to_unknown(&self, path: &[ASTNode<'_>]) -> bool {
         let above = path.split_last().map_or(path, |(_, above)| above);
         !self.unknown_calls.is_empty()
@@ -183,7 +207,7 @@ impl Names<'_> {
 
     fn variable(&mut self, expr: &Expr, in_rule: bool) {
         let Some(Access { root, is_local: false, position, .. }) = Access::of(expr) else { return };
-        let is_group = is_group(root) && !self.code.defines(root) || self.measures.iter().any(|name| name == root);
+        let is_group = self.is_group(root) && !self.code.defines(root) || self.measures.iter().any(|name| name == root);
         if !is_group && !matches!(root, "facts" | "calibrated") {
             if matches!(root, "test" | "untrained") && self.figures {
                 let message = format!("'{root}' can be read only in a success: nothing is tested yet");
@@ -280,7 +304,9 @@ impl Names<'_> {
         let Some(access) = Access::of(expr) else { return false };
         let all = self.facts_names.iter().any(|name| name == access.root);
         let group = if all { access.group_of_facts() } else { access.group() };
-        group.is_some_and(|(group, links)| is_group(group) && fact_of(group, links).is_some())
+        group.is_some_and(|(group, links)| {
+            self.code.views.group_of(group).is_some_and(|group| fact_of(group, links).is_some())
+        })
     }
 
     /// `1 / 2` is 0 between whole numbers: nobody means that.
@@ -301,26 +327,34 @@ impl Names<'_> {
             (_, true) => {
                 if let Some(Link::Property(group, position)) = access.links.first().copied()
                     && group != "calibrated"
-                    && !is_group(group)
+                    && !self.is_group(group)
                     && !self.measures.iter().any(|name| name == group)
                 {
                     return self.no_group(group, position);
                 }
                 // As a dictionary is read elsewhere: `params["speed"]`.
                 if let Some(Link::Index(Expr::StringConstant(group, position))) = access.links.first()
-                    && !is_group(group)
+                    && !self.is_group(group)
                 {
                     return self.no_group(group, *position);
                 }
                 access.group_of_facts()
             }
             (false, false) if in_rule && !access.is_local => access.group(),
-            _ => None,
+            _ => {
+                self.look_anywhere(&access);
+                None
+            }
         };
         if let Some((group, links)) = group
-            && is_group(group)
+            && self.is_group(group)
         {
             self.group(group, links);
         }
+    }
+
+    /// Whether it is a group of facts, a view among them.
+    pub(super) fn is_group(&self, name: &str) -> bool {
+        self.code.views.group_of(name).is_some()
     }
 }

@@ -7,9 +7,10 @@ use super::source::Code;
 use crate::judge::explain::offset;
 use crate::judge::expression::{BeamSpan, Typed};
 use crate::judge::fact_columns::Beam;
-use crate::judge::fact_table::{FACTS, Fact, FactId, is_group};
+use crate::judge::fact_table::{FACTS, FactId};
 use crate::judge::functions::WINDOWS;
 use crate::judge::readings::{ALL, BeamSought, Part, Reading};
+use crate::settings::UNNAMED_VIEW;
 use rhai::{AST, ASTNode, Expr};
 use std::ops::Range;
 
@@ -44,13 +45,18 @@ pub(super) fn function_parts(code: &Code, ast: &AST, name: &Range<usize>, compil
     }
     // Under another name than 'facts' only whole names are found.
     let text = &code.plain[body];
-    let is_named = |fact: &&Fact| {
+    let is_named = |name: &str| {
         let after = |at: usize| text[at..].chars().next().is_none_or(|c| !c.is_alphanumeric() && c != '_');
-        text.match_indices(&fact.name()).any(|(at, found)| after(at + found.len()))
+        text.match_indices(name).any(|(at, found)| after(at + found.len()))
     };
-    for fact in FACTS.iter().filter(is_named) {
-        if !readings.iter().any(|known| known.name == fact.name()) {
-            readings.extend(Reading::of_fact(fact));
+    for fact in FACTS {
+        let views = compiler.script.views.iter().enumerate().filter(|_| fact.group == UNNAMED_VIEW);
+        let of_views = views.map(|(view, name)| (view, format!("{name}.{}", fact.key)));
+        let own = (fact.group != UNNAMED_VIEW).then(|| (0, fact.name()));
+        for (view, name) in of_views.chain(own).filter(|(_, name)| is_named(name)) {
+            if !readings.iter().any(|known| known.name == name) {
+                readings.extend(Reading::of_fact(fact, name, view));
+            }
         }
     }
     vec![Part { span: name.clone(), flag: None, readings }]
@@ -96,26 +102,27 @@ fn collect(code: &Code, expr: &Expr, compiler: &mut Compiler<'_>, found: &mut Ve
         return;
     }
     let typed = compiler.range(expr).map(Typed::Number).or_else(|| compiler.expression(expr));
-    if let (Some(typed), Some((id, look))) = (typed, describe(&access, compiler)) {
+    if let (Some(typed), Some((id, look))) = (typed, describe(code, &access, compiler)) {
         let name = code.source.text[start..access_end(code, start)].trim_start_matches("facts.").to_owned();
         found.push((start, Reading { name, typed, id, look }));
     }
 }
 
 /// Which fact a chain reads, nothing for what was calibrated; and which beam to name with it.
-fn describe(access: &Access<'_>, compiler: &mut Compiler<'_>) -> Option<(Option<FactId>, BeamSought)> {
+fn describe(code: &Code, access: &Access<'_>, compiler: &mut Compiler<'_>) -> Option<(Option<FactId>, BeamSought)> {
     let (group, links) = access.group()?;
     let (group, links) = match links {
         // Of the step before, whose beams are no longer to be seen.
         [Link::Property(group, _), rest @ ..] if access.root == "previous" => {
-            return fact_of(group, rest).map(|fact| (Some(fact.id), BeamSought::Nowhere));
+            return fact_of(code.views.group_of(group)?, rest).map(|fact| (Some(fact.id), BeamSought::Nowhere));
         }
         links => (group, links),
     };
-    if links.is_empty() && !is_group(group) || group == "calibrated" {
+    let known = code.views.group_of(group);
+    if links.is_empty() && known.is_none() || group == "calibrated" {
         return Some((None, BeamSought::Nowhere));
     }
-    let fact = fact_of(group, links)?;
+    let fact = fact_of(known?, links)?;
     let look = match (fact.beam, links) {
         (Beam::Given, [Link::Index(beam)]) => BeamSought::One(compiler.beam(beam)?),
         (Beam::Given, [Link::Call(call, _)]) if group == "laser" => match (call.name.as_str(), call.args.as_slice()) {

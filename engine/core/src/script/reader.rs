@@ -7,7 +7,7 @@ use super::source::Code;
 use super::syntax::WrittenRule;
 use crate::judge::explain::offset;
 use crate::judge::expression::{Arithmetic, Comparison};
-use crate::judge::fact_table::{FactId, is_group};
+use crate::judge::fact_table::FactId;
 use crate::judge::rule::CompiledRule;
 use rhai::{Expr, Position, Scope};
 
@@ -107,12 +107,13 @@ impl OutlineReader<'_> {
     /// A fact with its path.
     pub(super) fn fact(&self, expr: &Expr) -> Option<NamedFact> {
         let access = Access::of(expr)?;
+        let is_group = |name: &str| self.code.views.group_of(name).is_some();
         let (group, links) = match access.links.split_first() {
             _ if is_group(access.root) => (access.root, access.links.as_slice()),
             Some((Link::Property(group, _), rest)) if is_group(group) => (*group, rest),
             _ => return None,
         };
-        let fact = fact_of(group, links)?;
+        let fact = fact_of(self.code.views.group_of(group)?, links)?;
         let mut path = group.to_owned();
         let plain = |expr: &Expr| self.number(expr, &|_| None);
         for link in links {

@@ -2,8 +2,8 @@
 
 use super::spoilt::Spoilt;
 use crate::diagnostic::{Kind, Mistakes, Result};
-use crate::judge::Judge;
-use crate::settings::Settings;
+use crate::judge::{Judge, ViewFacts};
+use crate::settings::{Settings, ViewSettings};
 
 /// After so many mistakes nothing more is tried: each may take as long as the limits allow.
 const MOST_TRIED: usize = 100;
@@ -21,13 +21,10 @@ pub(super) fn rehearse(
     mistakes: &mut Mistakes,
 ) -> Result<()> {
     for (range_m, sees) in [(settings.laser.max_range_m, false), (settings.laser.min_range_m, true)] {
-        let (rows, columns) = (settings.grid.rows as usize, settings.grid.columns as usize);
         let facts = judge.facts_mut();
         facts.ranges_m.fill(range_m as f32);
-        facts.grid = (rows, columns);
-        facts.cells = vec![f32::from(u8::from(sees)); rows * columns];
-        facts.coverage = f64::from(u8::from(sees));
-        (facts.seen, facts.contact, facts.fallen) = (sees, sees, sees);
+        facts.views = settings.views().map(|view| seen(view, sees)).collect();
+        (facts.contact, facts.fallen) = (sees, sees);
         (facts.step, facts.since_recovery) = (1, 1);
         (facts.action_linear_m_per_s, facts.linear_m_per_s) = (0.2, 0.2);
         if !spoilt.has("calibrate") && !certain(judge.calibrate(), mistakes)? {
@@ -37,6 +34,19 @@ pub(super) fn rehearse(
         everything(&judge, spoilt, mistakes)?;
     }
     Ok(())
+}
+
+/// A view that is full of foreground, or empty.
+fn seen(view: &ViewSettings, sees: bool) -> ViewFacts {
+    let (rows, columns) = (view.grid.rows as usize, view.grid.columns as usize);
+    ViewFacts {
+        cells: vec![f32::from(u8::from(sees)); rows * columns],
+        areas_px: vec![1; rows * columns],
+        grid: (rows, columns),
+        coverage: f64::from(u8::from(sees)),
+        seen: sees,
+        ..ViewFacts::default()
+    }
 }
 
 fn everything(judge: &Judge, spoilt: &Spoilt<'_>, mistakes: &mut Mistakes) -> Result<()> {

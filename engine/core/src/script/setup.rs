@@ -2,13 +2,14 @@
 
 use super::setup_table::SETUP;
 use super::source::Code;
+use super::state_parts::WrittenBins;
 use super::unread::Unread;
 use crate::diagnostic::{Diagnostic, Mistakes, Result, printable};
-use crate::geometry::Twist;
 use crate::judge::explain;
 use crate::judge::views::number;
-use crate::settings::{self, FilterSettings, PolicySettings, Settings, Value};
-use rhai::{AST, ASTNode, Dynamic, Engine, Expr, FnCallExpr, Map, NativeCallContext, Position, Stmt};
+use crate::settings::{self, PolicySettings, Settings, Value};
+use rhai::{AST, ASTNode, Dynamic, Engine, Expr, FnCallExpr, Map, Position, Stmt};
+use std::any::TypeId;
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -16,21 +17,20 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Most set-up calls in one script.
 const MAX_CALLS: usize = 256;
-/// Most actions.
-const MAX_ACTIONS: usize = 64;
-/// Most stages.
-const MAX_STAGES: usize = 16;
-/// Fastest forward motion of an action, m/s.
-const MAX_LINEAR: f64 = 2.0;
-/// Fastest turn of an action, rad/s.
-const MAX_ANGULAR: f64 = 6.0;
+/// Most arguments of one call: a view's name, its filters and its grid.
+const MAX_ARGUMENTS: usize = 10;
 
+/// A set-up call as it was carried out.
 #[derive(Debug)]
-struct Call {
-    name: &'static str,
-    arguments: Vec<Dynamic>,
-    position: Position,
+pub(super) struct Call {
+    pub name: &'static str,
+    pub arguments: Vec<Dynamic>,
+    pub position: Position,
 }
+
+/// What a call gives back, so that another can be about it: its number in the log.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct CallToken(pub usize);
 
 /// What the script called while its top level ran.
 #[derive(Debug, Clone)]
@@ -41,20 +41,13 @@ impl Log {
     pub(super) fn register(engine: &mut Engine) -> Self {
         let log = Self(Arc::new(Mutex::new((true, Vec::new()))));
         for row in SETUP {
-            let name = row.name;
-            let one = log.clone();
-            engine.register_fn(name, move |c: NativeCallContext| one.write(name, c.call_position(), vec![]));
-            let one = log.clone();
-            engine
-                .register_fn(name, move |c: NativeCallContext, a: Dynamic| one.write(name, c.call_position(), vec![a]));
-            let one = log.clone();
-            engine.register_fn(name, move |c: NativeCallContext, a: Dynamic, b: Dynamic| {
-                one.write(name, c.call_position(), vec![a, b])
-            });
-            let one = log.clone();
-            engine.register_fn(name, move |c: NativeCallContext, a: Dynamic, b: Dynamic, d: Dynamic| {
-                one.write(name, c.call_position(), vec![a, b, d])
-            });
+            for count in 0..=MAX_ARGUMENTS {
+                let (log, name) = (log.clone(), row.name);
+                engine.register_raw_fn(name, vec![TypeId::of::<Dynamic>(); count], move |context, arguments| {
+                    let arguments = arguments.iter().map(|argument| (**argument).clone()).collect();
+                    log.write(name, context.call_position(), arguments)
+                });
+            }
         }
         log
     }
@@ -64,14 +57,14 @@ impl Log {
         name: &'static str,
         position: Position,
         arguments: Vec<Dynamic>,
-    ) -> std::result::Result<(), Box<rhai::EvalAltResult>> {
+    ) -> std::result::Result<Dynamic, Box<rhai::EvalAltResult>> {
         let mut log = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let fault = match &*log {
             (false, _) => format!("'{name}' sets up: it belongs at the top of the script, not into a function"),
             (true, calls) if calls.len() >= MAX_CALLS => format!("more than {MAX_CALLS} set-up calls"),
             _ => {
                 log.1.push(Call { name, arguments, position });
-                return Ok(());
+                return Ok(Dynamic::from(CallToken(log.1.len() - 1)));
             }
         };
         Err(Box::new(rhai::EvalAltResult::ErrorRuntime(fault.into(), position)))
@@ -103,36 +96,42 @@ pub(super) struct SetUp {
     pub settings: Settings,
     pub places: SettingPlaces,
     pub unread: Unread,
+    /// The values of the script that its states tell apart.
+    pub bins: Vec<WrittenBins>,
 }
 
 /// Ends the set-up: the settings that the calls make, over the defaults. Every call that is wrong is added to `mistakes`,
 /// with its place: an unknown key, a value out of range, a setting made twice.
 pub(super) fn finish(log: &Log, code: &Code, ast: &AST, mistakes: &mut Mistakes) -> SetUp {
     let (settings, places, unread) = (Settings::default(), SettingPlaces::new(), Unread::default());
-    let mut setup =
-        SetupReader { code, ast, settings, places, unread, mistakes, call: Position::NONE, entries: OnceCell::new() };
-    for call in log.close() {
+    let (call, entries, bins) = (Position::NONE, OnceCell::new(), Vec::new());
+    let mut setup = SetupReader { code, ast, settings, places, unread, mistakes, call, entries, bins };
+    let mut calls = log.close();
+    setup.views(&mut calls);
+    for call in calls {
         setup.call = call.position;
         if let Err(wrong) = setup.apply(call.name, call.arguments) {
             setup.mistakes.add(*wrong);
             setup.unread.all_of(call.name);
         }
     }
-    SetUp { settings: setup.settings, places: setup.places, unread: setup.unread }
+    SetUp { settings: setup.settings, places: setup.places, unread: setup.unread, bins: setup.bins }
 }
 
 /// Where keys and their values stand, by call and key.
 type Entries = BTreeMap<(Position, String), (Position, Position)>;
 
-struct SetupReader<'a> {
-    code: &'a Code,
-    ast: &'a AST,
-    settings: Settings,
+pub(super) struct SetupReader<'a> {
+    pub(super) code: &'a Code,
+    pub(super) ast: &'a AST,
+    pub(super) settings: Settings,
     places: SettingPlaces,
-    unread: Unread,
-    mistakes: &'a mut Mistakes,
-    call: Position,
+    pub(super) unread: Unread,
+    pub(super) mistakes: &'a mut Mistakes,
+    /// Where the present call stands.
+    pub(super) call: Position,
     entries: OnceCell<Entries>,
+    pub(super) bins: Vec<WrittenBins>,
 }
 
 impl SetupReader<'_> {
@@ -145,7 +144,12 @@ impl SetupReader<'_> {
                 self.settings.world = self.word(world, form)?;
                 self.mark("world".to_owned(), self.call)
             }
-            ("filter", Some(filter), parameters, None) if filter.is_string() => self.filter(filter, parameters, form),
+            ("filter", Some(filter), parameters, None) if filter.is_string() => {
+                self.in_unnamed_view(|setup, view| setup.filter(view, filter, parameters, form))
+            }
+            ("state", first, second, third) => {
+                self.state(first.into_iter().chain(second).chain(third).chain(arguments))
+            }
             ("actions", Some(actions), None, None) if actions.is_array() => {
                 self.settings.actions = self.actions(actions)?;
                 self.mark("actions".to_owned(), self.call)
@@ -171,7 +175,7 @@ impl SetupReader<'_> {
                 map.map_or(Ok(()), |map| self.group(name, map, form))
             }
             (group, Some(map), None, None)
-                if !matches!(group, "world" | "filter" | "actions" | "stages" | "policy") =>
+                if !matches!(group, "world" | "filter" | "view" | "actions" | "stages" | "policy") =>
             {
                 self.group(group, map, form)
             }
@@ -179,12 +183,12 @@ impl SetupReader<'_> {
         }
     }
 
-    fn wrong<T>(&self, position: Position, message: String, label: &str, form: &str) -> Result<T> {
+    pub(super) fn wrong<T>(&self, position: Position, message: String, label: &str, form: &str) -> Result<T> {
         let diagnostic = explain::mistake(&self.code.source, "E-SCRIPT-SETTING", position, message, label);
         diagnostic.help(format!("write {form}")).fail()
     }
 
-    fn word(&self, value: Dynamic, form: &str) -> Result<String> {
+    pub(super) fn word(&self, value: Dynamic, form: &str) -> Result<String> {
         let word = value.into_string().unwrap_or_default();
         if word.trim().is_empty() {
             return self.wrong(self.call, "the name is empty".to_owned(), "no name", form);
@@ -192,7 +196,7 @@ impl SetupReader<'_> {
         Ok(word)
     }
 
-    fn mark(&mut self, setting: String, position: Position) -> Result<()> {
+    pub(super) fn mark(&mut self, setting: String, position: Position) -> Result<()> {
         let source = &self.code.source;
         let span = source.word_at(explain::offset(source, position));
         if let Some(before) = self.places.get(&setting) {
@@ -206,7 +210,7 @@ impl SetupReader<'_> {
         Ok(())
     }
 
-    fn group(&mut self, group: &'static str, map: Dynamic, form: &str) -> Result<()> {
+    pub(super) fn group(&mut self, group: &'static str, map: Dynamic, form: &str) -> Result<()> {
         let Some(map) = map.try_cast::<Map>() else {
             return self.wrong(
                 self.call,
@@ -242,7 +246,7 @@ impl SetupReader<'_> {
     }
 
     /// Adds the mistake in one setting; the others can still be read.
-    fn tell(&mut self, group: &'static str, key: &str, result: Result<()>) {
+    pub(super) fn tell(&mut self, group: &'static str, key: &str, result: Result<()>) {
         if let Err(wrong) = result {
             self.mistakes.add(*wrong);
             self.unread.one_of(group, key);
@@ -259,86 +263,8 @@ impl SetupReader<'_> {
         self.mark(format!("{group}.{key}"), position)
     }
 
-    fn filter(&mut self, name: Dynamic, parameters: Option<Dynamic>, form: &str) -> Result<()> {
-        let mut filter = FilterSettings { name: self.word(name, form)?, parameters: Vec::new() };
-        let stage = format!("filter:{}", self.settings.filters.len());
-        self.mark(stage.clone(), self.call)?;
-        let parameters = parameters.unwrap_or_else(|| Map::new().into());
-        let Some(parameters) = parameters.try_cast::<Map>() else {
-            return self.wrong(
-                self.call,
-                "a filter needs its parameters by name".to_owned(),
-                "found something else",
-                form,
-            );
-        };
-        for (key, value) in parameters {
-            let (_, position) = self.entry(&key);
-            let switch = value.as_bool().ok().map(|on| f64::from(u8::from(on)));
-            match number(&value).or(switch).filter(|number| number.is_finite()) {
-                Some(number) => filter.parameters.push((key.to_string(), number)),
-                None => {
-                    let message = format!("the parameter '{}' must be a number, false or true", printable(&key));
-                    let wrong = self.wrong(position, message, "found something else", form);
-                    self.tell("filter", &key, wrong);
-                }
-            }
-            self.mark(format!("{stage}.{key}"), position)?;
-        }
-        self.settings.filters.push(filter);
-        Ok(())
-    }
-
-    fn actions(&self, actions: Dynamic) -> Result<Vec<Twist>> {
-        let form = "actions([[0.4, 0.2], [0.4, 0.0]]); with forward speed in m/s and turning speed in rad/s";
-        let list = actions.into_array().unwrap_or_default();
-        if list.is_empty() || list.len() > MAX_ACTIONS {
-            let message = format!("there must be 1 to {MAX_ACTIONS} actions, found {}", list.len());
-            return self.wrong(self.call, message, "set here", form);
-        }
-        let mut twists = Vec::new();
-        for (index, action) in list.into_iter().enumerate() {
-            let pair = action.into_array().unwrap_or_default();
-            let [Some(linear), Some(angular)] = pair.iter().map(number).collect::<Vec<_>>()[..] else {
-                return self.wrong(self.call, format!("action {index} is not a pair of numbers"), "set here", form);
-            };
-            let within = |value: f64, most: f64| (-most..=most).contains(&value);
-            if !within(linear, MAX_LINEAR) || !within(angular, MAX_ANGULAR) {
-                let message = format!(
-                    "action {index} is [{linear}, {angular}]: at most {MAX_LINEAR} m/s and {MAX_ANGULAR} rad/s, either way"
-                );
-                return self.wrong(self.call, message, "set here", form);
-            }
-            twists.push(Twist::new(linear, angular));
-        }
-        Ok(twists)
-    }
-
-    fn stages(&self, stages: Dynamic) -> Result<Vec<String>> {
-        let form = "stages([\"search\", \"approach\"]);";
-        let list = stages.into_array().unwrap_or_default();
-        if !(2..=MAX_STAGES).contains(&list.len()) {
-            let message = format!("there must be 2 to {MAX_STAGES} stages, found {}", list.len());
-            return self.wrong(self.call, message, "set here", form);
-        }
-        let mut names: Vec<String> = Vec::new();
-        for stage in list {
-            let name = self.word(stage, form)?;
-            if names.contains(&name) {
-                return self.wrong(
-                    self.call,
-                    format!("there are two stages \"{}\"", printable(&name)),
-                    "set here",
-                    form,
-                );
-            }
-            names.push(name);
-        }
-        Ok(names)
-    }
-
     /// Where a key and its value stand in the map of the present call; the call itself if they are not written there.
-    fn entry(&self, key: &str) -> (Position, Position) {
+    pub(super) fn entry(&self, key: &str) -> (Position, Position) {
         let entries = self.entries.get_or_init(|| entries(self.ast));
         entries.get(&(self.call, key.to_owned())).copied().unwrap_or((self.call, self.call))
     }

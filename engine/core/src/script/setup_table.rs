@@ -23,6 +23,16 @@ pub(super) const SETUP: &[SetupCall] = &[
         "filter(\"sobel\", #{ threshold: 60 });",
         "One stage of the filter chain; several calls make a chain.",
     ),
+    row(
+        "view",
+        "view(\"red\", filter(\"colour\"), grid(#{ rows: 2, columns: 3 }));",
+        "One more way of looking at the image: a name, a chain of filters, a grid. Its facts are read by its name: `red.seen`.",
+    ),
+    row(
+        "state",
+        "state(\"red\", bins(laser.front, [0.5, 1.0]));",
+        "What the learner sees: views by their names, and values told apart by ranges. Without it, all views.",
+    ),
     row("actions", "actions([[0.4, 0.2], [0.4, 0.0]]);", "The actions: forward speed in m/s, turning speed in rad/s."),
     row(
         "stages",

@@ -1,5 +1,6 @@
 //! The text of a script: read from disk, checked for what must not be in it, and its plain code.
 
+use super::view_names::ViewNames;
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, nearest_name, printable};
 use std::ops::Range;
 use std::path::Path;
@@ -97,6 +98,8 @@ pub(super) struct Code {
     pub parsed: String,
     /// The text without comments and without what stands in quotes: of the same length, blanks instead.
     pub plain: String,
+    /// The views that it names.
+    pub views: ViewNames,
 }
 
 /// Checks a script's characters, comments and quotes.
@@ -118,7 +121,8 @@ pub(super) fn check_text(source: SourceText) -> Result<Code> {
         None => source.text.to_string(),
     };
     let plain = plain_code(&source, &parsed)?;
-    Ok(Code { source, parsed, plain })
+    let code = Code { source, parsed, plain, views: ViewNames::default() };
+    Ok(Code { views: ViewNames::of(&code), ..code })
 }
 
 fn check_characters(source: &SourceText) -> Result<()> {

@@ -269,7 +269,7 @@ impl SuccessCompiler<'_> {
         match (number, flag) {
             (Some(number), _) => Ok(Kinded::Number(Term::Constant(number))),
             (_, Some(flag)) => Ok(Kinded::Flag(Term::Flag(flag))),
-            _ if is_group(root) || root == "facts" => {
+            _ if is_group(root) || self.code.views.group_of(root).is_some() || root == "facts" => {
                 let message = format!("'{root}' is measured in every step: success is told by the test as a whole");
                 let help = "write a figure of the test, such as test.failures_per_1000 <= 2";
                 self.wrong(access.position, message, "a fact of a step", help)

@@ -8,6 +8,7 @@
 //! ```
 
 use super::source::Code;
+use super::state_parts;
 use crate::outcome::Then;
 use rhai::{CustomExpr, Dynamic, Engine, Expr, ImmutableString, LexError, ParseError, Position, Stmt};
 
@@ -63,6 +64,7 @@ pub(super) struct WrittenMeasure<'a> {
 pub(super) struct Forms {
     pub success: bool,
     pub measure: bool,
+    pub bins: bool,
 }
 
 impl Forms {
@@ -75,14 +77,17 @@ impl Forms {
         Self {
             success: begins_a_statement(code, "success", |tail| tail.starts_with('"')),
             measure: begins_a_statement(code, "measure", named),
+            bins: begins_a_statement(code, "state", |tail| tail.starts_with('('))
+                && code.names("bins")
+                && !code.defines("bins"),
         }
     }
 }
 
 /// Whether a statement begins with a word, followed by something that the form needs.
-fn begins_a_statement(code: &Code, word: &str, follows: impl Fn(&str) -> bool) -> bool {
+pub(super) fn begins_a_statement(code: &Code, word: &str, follows: impl Fn(&str) -> bool) -> bool {
     let ends = |text: &str| text.trim_end().is_empty() || text.trim_end().ends_with([';', '}']);
-    let spaced = |tail: &str| tail.starts_with(|c: char| c.is_whitespace() || c == '"');
+    let spaced = |tail: &str| tail.starts_with(|c: char| c.is_whitespace() || matches!(c, '"' | '('));
     code.plain.match_indices(word).any(|(at, _)| {
         let tail = &code.plain[at + word.len()..];
         ends(&code.plain[..at]) && spaced(tail) && follows(tail.trim_start())
@@ -95,18 +100,21 @@ pub(super) fn register(engine: &mut Engine, forms: Forms) {
     if forms.success {
         engine.register_custom_syntax_with_state_raw("success", next_of_success, false, |_, _, _| Ok(Dynamic::UNIT));
     }
+    if forms.bins {
+        state_parts::register(engine);
+    }
     if forms.measure {
         engine.register_custom_syntax_with_state_raw("measure", next_of_measure, false, |_, _, _| Ok(Dynamic::UNIT));
     }
 }
 
-type Next = Result<Option<ImmutableString>, ParseError>;
+pub(super) type Next = Result<Option<ImmutableString>, ParseError>;
 
-fn expect(word: &str, ahead: &str, message: &str) -> Next {
+pub(super) fn expect(word: &str, ahead: &str, message: &str) -> Next {
     if ahead == word { Ok(Some(word.into())) } else { wrong(message) }
 }
 
-fn wrong(message: &str) -> Next {
+pub(super) fn wrong(message: &str) -> Next {
     Err(LexError::ImproperSymbol(OURS.to_owned(), message.to_owned()).into_err(Position::NONE))
 }
 
@@ -219,7 +227,7 @@ fn next_of_measure(symbols: &[ImmutableString], ahead: &str, _: &mut Dynamic) ->
     }
 }
 
-fn is_form_of(expr: &Expr, word: &str) -> bool {
+pub(super) fn is_form_of(expr: &Expr, word: &str) -> bool {
     matches!(expr, Expr::Custom(custom, _) if custom.tokens.first().is_some_and(|first| first == word))
 }
 

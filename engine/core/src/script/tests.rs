@@ -13,7 +13,7 @@ mod words;
 
 use super::*;
 use crate::diagnostic::{Diagnostic, SourceText};
-use crate::judge::{Judge, Judgement};
+use crate::judge::{Judge, Judgement, ViewFacts};
 use crate::outcome::Then;
 
 pub(super) fn parse(text: &str) -> Result<Behaviour, Box<Diagnostic>> {
@@ -26,7 +26,7 @@ pub(super) fn judge(text: &str) -> Judge {
     let mut judge = behaviour.judge(0.5, 181).unwrap();
     let facts = judge.facts_mut();
     facts.ranges_m.fill(2.0);
-    (facts.grid, facts.cells) = ((3, 3), vec![0.0; 9]);
+    facts.views = vec![ViewFacts { grid: (3, 3), cells: vec![0.0; 9], ..ViewFacts::default() }];
     judge.calibrate().unwrap();
     judge
 }
@@ -75,7 +75,7 @@ fn seconds_are_rounded_up_to_steps() {
         let script = format!("rule \"far\" when laser.right > 1.0 for {time} => -1;");
         let mut judge = parse(&script).unwrap().judge(period_s, 181).unwrap();
         judge.facts_mut().ranges_m.fill(2.0);
-        judge.facts_mut().grid = (3, 3);
+        judge.facts_mut().views = vec![ViewFacts { grid: (3, 3), ..ViewFacts::default() }];
         1 + rewards(&mut judge, 100).iter().position(|&reward| reward != 0.0).unwrap()
     };
     assert_eq!(far("7 seconds", 0.5), 14);
@@ -163,11 +163,11 @@ fn the_set_up_becomes_settings_with_places() {
         rule \"a\" when true => 1;";
     let behaviour = parse(text).unwrap();
     let settings = behaviour.settings();
-    assert_eq!((settings.world.as_str(), settings.filters.len(), settings.actions.len()), ("hall", 2, 2));
-    assert_eq!(settings.filters[1].parameters, [("threshold".to_owned(), 70.0)]);
+    assert_eq!((settings.world.as_str(), settings.view.filters.len(), settings.actions.len()), ("hall", 2, 2));
+    assert_eq!(settings.view.filters[1].parameters, [("threshold".to_owned(), 70.0)]);
     assert_eq!((settings.camera.tilt_deg, settings.camera.lens.word()), (30.0, "fisheye"));
     assert_eq!((settings.learner.kind.word(), settings.learner.window), ("q", 5));
-    assert!(!settings.grid.fill);
+    assert!(!settings.view.grid.fill);
     let at = |name: &str| &text[behaviour.place_of(name).unwrap()];
     assert_eq!((at("world"), at("filter:1"), at("filter:1.threshold")), ("world", "filter", "70"));
     assert_eq!((at("camera.tilt_deg"), at("learner.kind"), at("actions")), ("30", "learner", "actions"));

@@ -60,6 +60,9 @@ pub(super) fn tree(engine: &mut Engine, code: &Code, mistakes: &mut Mistakes) ->
     for name in &measures {
         scope.push(name.as_str(), ());
     }
+    for name in code.views.all() {
+        scope.push(name, ());
+    }
     for name in &variables {
         scope.push(name.as_str(), ());
     }

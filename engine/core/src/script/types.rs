@@ -8,7 +8,6 @@ use super::syntax::is_success_expr;
 use crate::diagnostic::{Diagnostic, Mistakes};
 use crate::judge::explain::offset;
 use crate::judge::expression::{Arithmetic, Comparison};
-use crate::judge::fact_table::is_group;
 use crate::judge::functions::FUNCTIONS;
 use rhai::{AST, ASTNode, Expr, FnCallExpr, Position};
 
@@ -175,9 +174,7 @@ impl TypeChecker<'_> {
         let access = Access::of(expr)?;
         let by_argument = self.facts.contains(&access.root);
         let (group, links) = if by_argument { access.group_of_facts()? } else { access.group()? };
-        if !is_group(group) || !by_argument && access.is_local {
-            return None;
-        }
+        let group = self.code.views.group_of(group).filter(|_| by_argument || !access.is_local)?;
         let fact = fact_of(group, links)?;
         Some(if fact.kind() == "true or false" { Kind::Flag } else { Kind::Number })
     }

@@ -5,11 +5,13 @@
 
 mod body;
 mod table;
+mod views;
 mod words;
 
 use crate::geometry::Twist;
 pub use body::{BodyShape, Footprint};
 pub use table::{SETTINGS, Setting, SettingError, SettingShape, Value, apply};
+pub use views::{FilterSettings, GridSettings, PartSettings, UNNAMED_VIEW, ViewSettings};
 pub use words::{CombineWay, LearnerKind, Lens, RecoverTo};
 
 /// Everything that a run needs besides its seed.
@@ -17,8 +19,12 @@ pub use words::{CombineWay, LearnerKind, Lens, RecoverTo};
 pub struct Settings {
     /// Name of a world, or path of a world file.
     pub world: String,
-    /// The filter chain, first stage first; empty means the default chain.
-    pub filters: Vec<FilterSettings>,
+    /// How the robot looks at the image: the unnamed view, or the first one that a script names.
+    pub view: ViewSettings,
+    /// The views after the first, in the order of the script.
+    pub further_views: Vec<ViewSettings>,
+    /// What a state is made of, the lowest digit first; empty for the product of all views. Stages are added to either.
+    pub state: Vec<PartSettings>,
     /// The actions that the learner chooses from.
     pub actions: Vec<Twist>,
     /// Length and rhythm of a run.
@@ -29,8 +35,6 @@ pub struct Settings {
     pub camera: CameraSettings,
     /// The laser and its mount.
     pub laser: LaserSettings,
-    /// How a filtered image becomes a state.
-    pub grid: GridSettings,
     /// The way of learning and its parameters.
     pub learner: LearnerSettings,
     /// What `then recover` does.
@@ -52,15 +56,6 @@ pub struct PolicySettings {
     pub name: String,
     /// Its file or the folder of its run, as written.
     pub path: String,
-}
-
-/// One stage of the filter chain.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FilterSettings {
-    /// The filter's name.
-    pub name: String,
-    /// The parameters that the user set; the others have their defaults.
-    pub parameters: Vec<(String, f64)>,
 }
 
 /// Length and rhythm of a run.
@@ -109,16 +104,6 @@ pub struct LaserSettings {
     pub min_range_m: f64,
     pub max_range_m: f64,
     pub noise_m: f64,
-}
-
-/// How a filtered image becomes a state.
-#[derive(Debug, Clone, PartialEq)]
-#[allow(missing_docs, reason = "every field is documented in the table of settings")]
-pub struct GridSettings {
-    pub rows: u64,
-    pub columns: u64,
-    pub occupied: f64,
-    pub fill: bool,
 }
 
 /// The way of learning and its parameters (Table 1 of the paper).
@@ -188,7 +173,9 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             world: "room".to_owned(),
-            filters: Vec::new(),
+            view: ViewSettings::named(UNNAMED_VIEW),
+            further_views: Vec::new(),
+            state: Vec::new(),
             actions: PAPER_ACTIONS.iter().map(|&(linear, angular)| Twist::new(linear, angular)).collect(),
             run: RunSettings { steps: 5_200, test_steps: 5_000, period_s: 0.5 },
             robot: RobotSettings {
@@ -219,7 +206,6 @@ impl Default for Settings {
                 max_range_m: 8.192,
                 noise_m: 0.005,
             },
-            grid: GridSettings { rows: 3, columns: 3, occupied: 0.015, fill: true },
             learner: LearnerSettings {
                 kind: LearnerKind::Ttd,
                 step_size: 0.2,

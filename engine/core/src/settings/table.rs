@@ -115,7 +115,7 @@ macro_rules! stored_words {
 stored_words!(CombineWay, LearnerKind, Lens, RecoverTo);
 
 macro_rules! settings {
-    ($($group:ident . $key:ident, $unit:literal, $shape:expr, $purpose:literal;)*) => {
+    ($($group:ident . $key:ident $(in $within:ident)?, $unit:literal, $shape:expr, $purpose:literal;)*) => {
         /// Every setting that is one value, group by group.
         pub const SETTINGS: &[Setting] = &[$(Setting {
             group: stringify!($group),
@@ -123,8 +123,8 @@ macro_rules! settings {
             unit: $unit,
             shape: $shape,
             purpose: $purpose,
-            get: |settings| settings.$group.$key.value(),
-            set: |settings, value| settings.$group.$key.store(value),
+            get: |settings| settings.$($within.)?$group.$key.value(),
+            set: |settings, value| settings.$($within.)?$group.$key.store(value),
         }),*];
     };
 }
@@ -154,10 +154,10 @@ settings! {
     laser.min_range_m, "metres", Number(0.0, 10.0), "Nothing nearer is measured; nearer things read as this.";
     laser.max_range_m, "metres", Number(0.1, 100.0), "Nothing seen reads as this.";
     laser.noise_m, "metres", Number(0.0, 1.0), "Deviation of the range noise.";
-    grid.rows, "cells", Whole(1, 16), "Rows of the grid over the filtered image.";
-    grid.columns, "cells", Whole(1, 16), "Columns of the grid.";
-    grid.occupied, "share", Number(0.0001, 1.0), "Share of foreground pixels from which a cell is occupied.";
-    grid.fill, "", Flag, "Whether an occupied cell fills those above it.";
+    grid.rows in view, "cells", Whole(1, 16), "Rows of the grid over the filtered image.";
+    grid.columns in view, "cells", Whole(1, 16), "Columns of the grid.";
+    grid.occupied in view, "share", Number(0.0001, 1.0), "Share of foreground pixels from which a cell is occupied.";
+    grid.fill in view, "", Flag, "Whether an occupied cell fills those above it.";
     learner.kind, "", Choice(LearnerKind::WORDS), "The way of learning.";
     learner.step_size, "share", Number(0.0, 1.0), "Share of the error that is learned (alpha).";
     learner.discount, "share", Number(0.0, 1.0), "How much the next value counts (gamma).";

@@ -71,6 +71,15 @@ impl ComposedMap {
         self.parts.iter().try_fold(1_usize, |product, part| product.checked_mul(part.values()))
     }
 
+    /// `red (27) x laser.front (3) x stage (2)`: its parts, with how many values each has.
+    #[must_use]
+    pub fn factors(&self) -> String {
+        let part = |part: &StatePart| match part {
+            StatePart::View { name, .. } | StatePart::Digit { name, .. } => format!("{name} ({})", part.values()),
+        };
+        self.parts.iter().map(part).collect::<Vec<_>>().join(" x ")
+    }
+
     /// The value of each part in a state.
     fn values(&self, mut state: usize) -> impl Iterator<Item = (&StatePart, usize)> {
         self.parts.iter().map(move |part| {

@@ -88,7 +88,7 @@ fn filters(settings: &Settings) -> String {
         let parameters = filter.parameters.iter().map(|(name, value)| format!(" {name} {value}")).collect::<String>();
         format!("{}{parameters}", filter.name)
     };
-    settings.filters.iter().map(filter).collect::<Vec<_>>().join(", ")
+    settings.view.filters.iter().map(filter).collect::<Vec<_>>().join(", ")
 }
 
 fn lines(before: &str, after: &str) -> Vec<LineChange> {

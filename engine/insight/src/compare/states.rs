@@ -72,8 +72,12 @@ impl StateComparison {
         if !first.plan.learns() || !other.plan.learns() {
             return nothing("one of the runs combines policies: it has no table of its own");
         }
-        if a.grid != b.grid {
+        let grids = |side: &Side| side.plan.settings.views().map(|view| view.grid.clone()).collect::<Vec<_>>();
+        if grids(first) != grids(other) {
             return nothing("the grids differ, so the states have other meanings");
+        }
+        if a.state != b.state || a.stages != b.stages {
+            return nothing("the parts of the states differ, so these have other meanings");
         }
         let (Ok(map), [own, others]) = (first.plan.state_map(), [first, other].map(votes)) else {
             return nothing("the grid of these runs cannot be made");

@@ -2,7 +2,7 @@
 
 use super::Finding;
 use engine::experiment::Plan;
-use engine::settings::{CombineWay, LearnerKind, RecoverTo, SETTINGS};
+use engine::settings::{CombineWay, LearnerKind, RecoverTo, SETTINGS, UNNAMED_VIEW};
 
 pub(super) fn check_setup(plan: &Plan, findings: &mut Vec<Finding>) {
     for row in SETTINGS {
@@ -30,16 +30,22 @@ pub(super) fn check_setup(plan: &Plan, findings: &mut Vec<Finding>) {
     blind_starts(plan, findings);
 }
 
-/// Filters that see nothing where every attempt begins.
+/// Views that see nothing where every attempt begins.
 fn blind_starts(plan: &Plan, findings: &mut Vec<Finding>) {
-    let last = plan.settings.filters.len().saturating_sub(1);
-    let Some(span) = plan.behaviour.place_of(&format!("filter:{last}")) else { return };
-    if plan.sees_at_the_starts().unwrap_or(true) {
-        return;
+    for view in plan.blind_at_the_starts().unwrap_or_default() {
+        let Some(view) = plan.settings.views().nth(view) else { continue };
+        let last = view.filters.len().saturating_sub(1);
+        let Some(span) = plan.behaviour.place_of(&view.place(&format!("filter:{last}"))) else { continue };
+        let what = if view.name == UNNAMED_VIEW {
+            "the filters see".to_owned()
+        } else {
+            format!("view \"{}\" sees", view.name)
+        };
+        let message = format!("{what} nothing from any start: what is looked for comes into sight only on the way");
+        let help =
+            "if that is not meant, check the filter's parameters and the camera's tilt, or add a start that sees it";
+        findings.push(Finding::warning(plan, "W-FILTER-BLIND", span, message).say("sees nothing at the starts", help));
     }
-    let message = "the filters see nothing from any start: what they look for comes into sight only on the way";
-    let help = "if that is not meant, check the filter's parameters and the camera's tilt, or add a start that sees it";
-    findings.push(Finding::warning(plan, "W-FILTER-BLIND", span, message).say("sees nothing at the starts", help));
 }
 
 /// Why a setting has no effect, and what to do about it.
@@ -88,7 +94,7 @@ fn idle(plan: &Plan, name: &str) -> Option<(String, &'static str)> {
         ("robot", "tick_s") if settings.robot.tick_s >= settings.run.period_s => {
             ("a tick is not shorter than the time between two actions".to_owned(), "set it below run.period_s")
         }
-        ("grid", "fill") if settings.grid.rows == 1 => {
+        ("grid", "fill") if settings.view.grid.rows == 1 => {
             ("a grid of one row has nothing to fill".to_owned(), "take it out, or use more rows")
         }
         _ => return None,

@@ -87,6 +87,8 @@ fn allowed(plan: &Plan, compared: &Compared) -> Option<Allowed> {
         Reach::Beams => between(0.0, settings.laser.beams as f64, "the numbers of the beams"),
         Reach::Steps => between(0.0, settings.run.steps.max(settings.run.test_steps) as f64, "the steps of a run"),
         Reach::Between(low, high) => between(low, high, if unit == Unit::Share { "shares" } else { "its values" }),
+        // Where nothing is seen it is farther than any limit: that is no mistake of the unit.
+        Reach::Seen(low, high, unseen) => between(low.min(unseen), high.max(unseen), "its values"),
         Reach::Laser => {
             let laser = &settings.laser;
             between(laser.min_range_m, laser.max_range_m + 6.0 * laser.noise_m, "the laser's beams")

@@ -226,7 +226,7 @@ fn bytes_of_next(bytes: usize, document: &Document) -> usize {
 
 fn settings(plan: &Plan) -> Vec<SettingView> {
     let defaults = Settings::default();
-    let filters = plan.settings.filters.iter().map(|filter| {
+    let filters = plan.settings.view.filters.iter().map(|filter| {
         let parameters: Vec<String> = filter.parameters.iter().map(|(name, value)| format!("{name} {value}")).collect();
         SettingView {
             name: format!("filter.{}", filter.name),

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::filter::Catalogue;
-use engine::settings::FilterSettings;
+use engine::settings::{FilterSettings, GridSettings, ViewSettings};
 
 /// A filter stage with the parameters that were set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -51,5 +51,37 @@ impl FilterEntry {
     pub(super) fn settings(&self) -> FilterSettings {
         let parameters = self.parameters.iter().map(|(key, value)| (key.clone(), *value)).collect();
         FilterSettings { name: self.name.clone(), parameters }
+    }
+}
+
+/// A view as run and policy files hold it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ViewEntry {
+    pub name: String,
+    grid: GridEntry,
+    pub filter: Vec<FilterEntry>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct GridEntry {
+    rows: u64,
+    columns: u64,
+    occupied: f64,
+    fill: bool,
+}
+
+impl ViewEntry {
+    pub(super) fn new(view: &ViewSettings, filters: &Catalogue) -> Self {
+        let GridSettings { rows, columns, occupied, fill } = view.grid;
+        let filter = view.filters.iter().map(|filter| FilterEntry::new(filter, filters)).collect();
+        Self { name: view.name.clone(), grid: GridEntry { rows, columns, occupied, fill }, filter }
+    }
+
+    pub(super) fn settings(&self) -> ViewSettings {
+        let GridEntry { rows, columns, occupied, fill } = self.grid;
+        let filters = self.filter.iter().map(FilterEntry::settings).collect();
+        ViewSettings { name: self.name.clone(), filters, grid: GridSettings { rows, columns, occupied, fill } }
     }
 }

@@ -42,6 +42,10 @@ fn member(plan: &Plan, index: usize, source: &SourceText) -> Result<Member> {
         let message = format!("policy \"{}\": {}{}", printable(name), error.message, line.unwrap_or_default());
         wrong(plan, index, message, "this policy", "learn its behaviour again")
     })?;
+    if !stored.parts.is_empty() {
+        let message = format!("policy \"{}\" has states of several parts: these cannot be combined", printable(name));
+        return Err(wrong(plan, index, message, "this policy", "combine policies of one view, without stages"));
+    }
     stored.suits(&plan.settings, &*plan.state_map()?).map_err(|[own, wanted]| {
         let message = format!("policy \"{}\" was learned with {own}, this script has {wanted}", printable(name));
         let path = printable(&source.path.display().to_string());

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::filter_entry::FilterEntry;
+use super::filter_entry::{FilterEntry, ViewEntry};
 use super::parts::belongs;
 use super::toml_error;
 use engine::diagnostic::{Diagnostic, Result, SourceText};
@@ -33,15 +33,23 @@ struct PolicyFile {
     /// SHA-256 of the `run.toml` that it was learned under; absent where there is none, as in a pack.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     run_sha256: Option<String>,
-    rows: u64,
-    columns: u64,
-    occupied: f64,
-    fill: bool,
+    /// The grid, if it alone is the state; of several parts each view has its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    rows: Option<u64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    columns: Option<u64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    occupied: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    fill: Option<bool>,
     states: usize,
     /// Forward speed in m/s and turning speed in rad/s.
     actions: Vec<[f64; 2]>,
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     filter: Vec<FilterEntry>,
+    /// What the parts of the state look through, if it has several.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    view: Vec<ViewEntry>,
     /// The parts of the state, the lowest digit first; none if the grid alone is the state.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     part: Vec<toml::Table>,
@@ -96,10 +104,14 @@ fn text_of(
 ) -> Result<String> {
     let unwritten =
         |why: String| Box::new(Diagnostic::new("E-POLICY-FILE", format!("the policy cannot be written: {why}")));
-    let (table, part) = (map.to_table(), parts_of(map));
-    let grid = part.iter().find_map(|part| part.get("grid")?.as_table()).unwrap_or(&table);
-    let grid = GridMap::settings_from(grid)
-        .map_err(|key| unwritten(format!("its states do not come from a grid, which has '{key}'")))?;
+    let part = parts_of(map);
+    let (grid, filter, view) = if part.is_empty() {
+        let grid = GridMap::settings_from(&map.to_table())
+            .map_err(|key| unwritten(format!("its states do not come from a grid, which has '{key}'")))?;
+        (Some(grid), settings.view.filters.iter().map(|filter| FilterEntry::new(filter, filters)).collect(), Vec::new())
+    } else {
+        (None, Vec::new(), settings.views().map(|view| ViewEntry::new(view, filters)).collect())
+    };
     let state = policy.rows().iter().enumerate().filter_map(|(index, row)| {
         let row = row.as_ref()?;
         let best = policy.best(index)?.0;
@@ -110,13 +122,14 @@ fn text_of(
         part,
         behaviour: behaviour.to_owned(),
         run_sha256: run.map(|run| Digest::of(run.as_bytes()).to_string()),
-        rows: grid.rows,
-        columns: grid.columns,
-        occupied: grid.occupied,
-        fill: grid.fill,
+        rows: grid.as_ref().map(|grid| grid.rows),
+        columns: grid.as_ref().map(|grid| grid.columns),
+        occupied: grid.as_ref().map(|grid| grid.occupied),
+        fill: grid.as_ref().map(|grid| grid.fill),
         states: policy.rows().len(),
         actions: settings.actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
-        filter: settings.filters.iter().map(|filter| FilterEntry::new(filter, filters)).collect(),
+        filter,
+        view,
         state: state.collect(),
     };
     toml::to_string(&file)
@@ -136,7 +149,15 @@ impl StoredPolicy {
             return Err(unfit(source, &message, "learn the behaviour again"));
         }
         let file: PolicyFile = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
-        let grid = GridSettings { rows: file.rows, columns: file.columns, occupied: file.occupied, fill: file.fill };
+        let whole = |rows, columns, occupied, fill| {
+            Some(GridSettings { rows: rows?, columns: columns?, occupied: occupied?, fill: fill? })
+        };
+        let own = whole(file.rows, file.columns, file.occupied, file.fill);
+        let first = file.view.first().map(ViewEntry::settings);
+        let (Some(grid), true) = (own.or(first.map(|view| view.grid)), file.part.is_empty() == file.view.is_empty())
+        else {
+            return Err(unfit(source, "has neither a grid nor views", "learn the behaviour again"));
+        };
         // A state of the largest grid takes 8 bytes even if it was never met: the number is checked before it is believed.
         if file.states > MAX_STATES || file.actions.is_empty() {
             return Err(unfit(source, "has no actions or too many states", "learn the behaviour again"));
@@ -150,11 +171,12 @@ impl StoredPolicy {
             }
             rows[index] = Some(PolicyRow { visits, values });
         }
+        let entries = file.view.first().map_or(file.filter, |view| view.filter.clone());
         Ok(Self {
             behaviour: file.behaviour,
             run_sha256: file.run_sha256,
-            filters: file.filter.iter().map(FilterEntry::settings).collect(),
-            entries: file.filter,
+            filters: entries.iter().map(FilterEntry::settings).collect(),
+            entries,
             grid,
             parts: file.part,
             policy: Policy::new(file.actions.len(), rows),
@@ -167,7 +189,7 @@ impl StoredPolicy {
     /// # Errors
     /// What differs: its own value, then the settings'.
     pub fn suits(&self, settings: &Settings, map: &dyn StateMap) -> std::result::Result<(), [String; 2]> {
-        let (own, grid, states) = (&self.grid, &settings.grid, map.states());
+        let (own, grid, states) = (&self.grid, &settings.view.grid, map.states());
         let shape = |rows: u64, columns: u64| format!("a grid of {rows}x{columns}");
         let fill = |fill: bool| format!("a grid {} column fill", if fill { "with" } else { "without" });
         if (own.rows, own.columns) != (grid.rows, grid.columns) {
@@ -255,7 +277,7 @@ mod tests {
     use engine::state::Grid;
 
     fn map(settings: &Settings) -> GridMap {
-        GridMap::new(&settings.grid, Grid::new(&settings.grid, 160, 120).unwrap())
+        GridMap::new(&settings.view.grid, Grid::new(&settings.view.grid, 160, 120).unwrap())
     }
 
     fn written(settings: &Settings) -> Result<String> {
@@ -285,11 +307,11 @@ mod tests {
     fn filters_are_read_back_with_their_parameters() {
         let mut settings = Settings::default();
         let parameters = vec![("saturation".to_owned(), 0.4), ("hue_deg".to_owned(), 120.0)];
-        settings.filters = vec![FilterSettings { name: "colour".to_owned(), parameters }];
+        settings.view.filters = vec![FilterSettings { name: "colour".to_owned(), parameters }];
         let source = SourceText::new("policy.toml", written(&settings).unwrap());
         let mut read = StoredPolicy::parse(&source).unwrap().filters;
         read[0].parameters.sort_by_key(|(name, _)| std::cmp::Reverse(name.clone()));
-        assert_eq!(read, settings.filters);
+        assert_eq!(read, settings.view.filters);
     }
 
     #[test]
@@ -303,9 +325,9 @@ mod tests {
     fn another_grid_or_other_actions_are_refused() {
         let mut settings = Settings::default();
         let source = SourceText::new("policy.toml", written(&settings).unwrap());
-        settings.grid.rows = 4;
+        settings.view.grid.rows = 4;
         assert!(read(&source, &settings).unwrap_err().message.contains("a grid of 3x3"));
-        settings.grid.rows = 3;
+        settings.view.grid.rows = 3;
         settings.actions.pop();
         let error = read(&source, &settings).unwrap_err();
         assert!(error.message.contains("with 14 actions, this run has 13 actions"), "{}", error.message);

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use toml::Table;
 
-use super::filter_entry::FilterEntry;
+use super::filter_entry::{FilterEntry, ViewEntry};
 use super::members::with_policy_texts;
 use super::parts::{RUN_FILE, check_parts};
 use super::policy_file::{POLICY_FILE, policy_of_run};
@@ -18,12 +18,14 @@ use engine::filter::Catalogue;
 use engine::geometry::Twist;
 use engine::learner::Carry;
 use engine::script::Behaviour;
-use engine::settings::{SETTINGS, Settings, Value, apply};
+use engine::settings::{SETTINGS, Settings, Value, ViewSettings, apply};
 use engine::world::Layout;
 
 const FORMAT: u32 = 1;
 /// The format of a run whose reward was swapped while it learned.
 const FORMAT_OF_LEGS: u32 = 2;
+/// The format of a run with more views than one.
+const FORMAT_OF_VIEWS: u32 = 3;
 /// As many as `run.steps` may be.
 const MOST_LEG_STEPS: u64 = 1_000_000_000;
 
@@ -36,6 +38,9 @@ struct RunFile {
     seed: u64,
     actions: Vec<[f64; 2]>,
     filters: Vec<FilterEntry>,
+    /// The views after the first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    view: Vec<ViewEntry>,
     settings: Table,
     script: TextEntry,
     world: TextEntry,
@@ -98,12 +103,13 @@ pub fn run_to_toml(plan: &Plan, seed: u64) -> Result<String> {
         script: TextEntry::new(leg.plan.behaviour.source()),
     });
     let file = RunFile {
-        format: if plan.earlier.is_empty() { FORMAT } else { FORMAT_OF_LEGS },
+        format: format(!plan.earlier.is_empty(), !settings.further_views.is_empty()),
         engine: env!("CARGO_PKG_VERSION").to_owned(),
         behaviour: plan.behaviour.name().to_owned(),
         seed,
         actions: settings.actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
-        filters: settings.filters.iter().map(|filter| FilterEntry::new(filter, &plan.filters)).collect(),
+        filters: settings.view.filters.iter().map(|filter| FilterEntry::new(filter, &plan.filters)).collect(),
+        view: settings.further_views.iter().map(|view| ViewEntry::new(view, &plan.filters)).collect(),
         settings: settings_table(settings),
         script: TextEntry::new(plan.behaviour.source()),
         world: TextEntry::new(&plan.layout.source),
@@ -112,6 +118,14 @@ pub fn run_to_toml(plan: &Plan, seed: u64) -> Result<String> {
     };
     toml::to_string_pretty(&file)
         .map_err(|error| Box::new(Diagnostic::new("E-RUN-FILE", format!("the settings cannot be written: {error}"))))
+}
+
+fn format(legs: bool, views: bool) -> u32 {
+    match (views, legs) {
+        (true, _) => FORMAT_OF_VIEWS,
+        (false, true) => FORMAT_OF_LEGS,
+        (false, false) => FORMAT,
+    }
 }
 
 fn settings_table(settings: &Settings) -> Table {
@@ -163,19 +177,22 @@ impl StoredRun {
     pub(super) fn read(folder: &Path, filters: Arc<Catalogue>) -> Result<(Self, SourceText)> {
         let source = read_stored(&folder.join(RUN_FILE))?;
         let file: RunFile = toml::from_str(&source.text).map_err(|error| toml_error(&source, &error))?;
-        if file.format != if file.leg.is_empty() { FORMAT } else { FORMAT_OF_LEGS } {
+        let expected = format(!file.leg.is_empty(), !file.view.is_empty());
+        if file.format != expected {
             let message = format!(
-                "'{}' has format {} and {} earlier legs; this engine reads format {FORMAT} without, {FORMAT_OF_LEGS} with",
+                "'{}' has format {}; this engine reads format {expected} with {} earlier legs and {} further views",
                 source.path.display(),
                 file.format,
-                file.leg.len()
+                file.leg.len(),
+                file.view.len()
             );
             return Diagnostic::new("E-RUN-FILE", message).fail();
         }
         // No file says which body yet.
         let body = Settings::default().robot.body;
         let layout = Arc::new(Layout::parse(file.world.check(&source)?, &body)?);
-        file.filters.iter().try_for_each(|filter| filter.check(&filters))?;
+        let further = file.view.iter().flat_map(|view| &view.filter);
+        file.filters.iter().chain(further).try_for_each(|filter| filter.check(&filters))?;
         let plan_of = |script: &TextEntry, table: &Table| {
             let behaviour = Arc::new(Behaviour::parse(&file.behaviour, script.check(&source)?)?);
             let settings = settings(&source, behaviour.settings(), &file, table)?;
@@ -214,7 +231,14 @@ fn not_one_run(source: &SourceText, what: &str) -> Diagnostic {
 fn settings(source: &SourceText, written: &Settings, file: &RunFile, table: &Table) -> Result<Settings> {
     let mut settings = written.clone();
     settings.actions = file.actions.iter().map(|[linear, angular]| Twist::new(*linear, *angular)).collect();
-    settings.filters = file.filters.iter().map(FilterEntry::settings).collect();
+    settings.view.filters = file.filters.iter().map(FilterEntry::settings).collect();
+    let names = |views: &[ViewSettings]| views.iter().map(|view| view.name.clone()).collect::<Vec<_>>();
+    let further: Vec<ViewSettings> = file.view.iter().map(ViewEntry::settings).collect();
+    if names(&further) != names(&settings.further_views) {
+        let message = format!("the views of '{}' are not those of its script", source.path.display());
+        return Diagnostic::new("E-RUN-FILE", message).help("run the behaviour again").fail();
+    }
+    settings.further_views = further;
     for (group, keys) in table {
         for (key, value) in keys.as_table().into_iter().flatten() {
             let value = match value {

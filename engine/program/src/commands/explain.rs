@@ -134,7 +134,7 @@ fn print(console: &mut Console, plan: &Plan, report: &StepReport) -> std::result
         false => " (the best one known)",
     };
     console.line(&format!("action:    {}{how}", motion(reasons.motion)))?;
-    let columns = plan.settings.grid.columns as usize;
+    let columns = plan.settings.view.grid.columns as usize;
     let (from, to) = (icon(&reasons.state.cells, columns), icon(&reasons.next_state.cells, columns));
     for (line, (from, to)) in from.iter().zip(&to).enumerate() {
         let arrow = if line == 0 { "->" } else { "  " };

@@ -160,7 +160,7 @@ fn met(run: &Path, plan: &Sight) -> Result<Policy> {
     };
     let differs = if eyes(own, &plan.filters) != eyes(wanted, &plan.filters) {
         "other filters"
-    } else if own.grid != wanted.grid {
+    } else if own.view.grid != wanted.view.grid {
         "another grid"
     } else if (own.camera.width_px, own.camera.height_px) != (wanted.camera.width_px, wanted.camera.height_px) {
         "another size of image"
@@ -180,10 +180,15 @@ fn eyes<'a>(settings: &'a Settings, filters: &Catalogue) -> Vec<(&'a str, Vec<f6
         let parameters = filters.find(name).map_or(&[][..], |entry| entry.descriptor.parameters);
         parameters.iter().map(|parameter| value(given, parameter.name, parameter.default)).collect()
     };
-    if settings.filters.is_empty() {
+    if settings.view.filters.is_empty() {
         return vec![("sobel", values("sobel", &[]))];
     }
-    settings.filters.iter().map(|filter| (filter.name.as_str(), values(&filter.name, &filter.parameters))).collect()
+    settings
+        .view
+        .filters
+        .iter()
+        .map(|filter| (filter.name.as_str(), values(&filter.name, &filter.parameters)))
+        .collect()
 }
 
 fn visits(policy: &Policy, state: usize) -> u64 {

@@ -219,7 +219,7 @@ fn print_states(console: &mut Console, plan: &Plan, report: &RescoreReport) -> s
     if guesses > 0 {
         console.line(&format!("note:      {guesses} of these to an action that the record never tried there"))?;
     }
-    let columns = plan.settings.grid.columns as usize;
+    let columns = plan.settings.view.grid.columns as usize;
     for entry in changed.iter().take(SHOWN) {
         let guess = |choice: &ChosenAction| match choice.tried {
             0 => "never tried there: a guess".to_owned(),

@@ -2,9 +2,9 @@
 
 use super::super::setup_table::SETUP;
 use super::super::{Behaviour, definitions, reference};
-use crate::judge::Judgement;
 use crate::judge::fact_table::FACTS;
 use crate::judge::functions::FUNCTIONS;
+use crate::judge::{Judgement, ViewFacts};
 use crate::outcome::Then;
 use std::path::{Path, PathBuf};
 
@@ -88,7 +88,7 @@ fn the_definitions_name_every_fact() {
 fn the_platform_script_sees_an_edge_beside_the_front_beam() {
     let behaviour = Behaviour::load(&scripts().join("platform.rhai")).unwrap();
     let mut judge = behaviour.judge(0.33, 181).unwrap();
-    judge.facts_mut().grid = (3, 3);
+    judge.facts_mut().views = vec![ViewFacts { grid: (3, 3), ..ViewFacts::default() }];
     for beam in 0..181_usize {
         let angle = (beam as f64 - 90.0).to_radians();
         judge.facts_mut().ranges_m[beam] = (0.537 / libm::cos(angle)).clamp(0.2, 8.192) as f32;

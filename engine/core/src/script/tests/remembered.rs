@@ -2,7 +2,7 @@
 
 use super::errors::expect;
 use super::{judge, parse};
-use crate::judge::Judge;
+use crate::judge::{Judge, ViewFacts};
 use crate::outcome::Then;
 
 /// The rewards of steps in which the beam ahead has these ranges; the period is half a second.
@@ -134,7 +134,7 @@ fn a_word_that_a_script_defines_is_its_own() {
         "fn odometry(x) { x } rule \"a\" when true => odometry(2.0);",
     ] {
         let mut judge = parse(script).unwrap_or_else(|wrong| panic!("{script}: {wrong:?}")).judge(0.5, 181).unwrap();
-        judge.facts_mut().grid = (3, 3);
+        judge.facts_mut().views = vec![ViewFacts { grid: (3, 3), ..ViewFacts::default() }];
         judge.calibrate().unwrap();
         assert_eq!(judge.judge().unwrap().reward, 2.0, "{script}");
     }

@@ -2,8 +2,8 @@
 
 use super::super::Behaviour;
 use super::parse;
-use crate::judge::Facts;
 use crate::judge::rule::{Clause, CompiledRule};
+use crate::judge::{Facts, ViewFacts};
 use crate::random::{Random, Stream};
 
 const BEAMS: usize = 9;
@@ -31,6 +31,10 @@ impl Writer {
             "laser.sector(0, BEAM).mean",
             "camera.coverage",
             "camera.cell(1, 2)",
+            "camera.rows(0, 1)",
+            "facts.camera.columns(1, 2)",
+            "camera.bearing_deg",
+            "facts.camera.line_offset_m",
             "action.linear",
             "action.angular",
             "robot.linear",
@@ -106,12 +110,12 @@ impl Writer {
     fn facts(&mut self, facts: &mut Facts) {
         let mut unit = || self.random.unit();
         facts.ranges_m.iter_mut().for_each(|range| *range = (unit() * 2.0 + 0.2) as f32);
-        facts.cells = (0..9).map(|_| unit() as f32).collect();
-        facts.grid = (3, 3);
-        facts.coverage = unit();
+        let cells = (0..9).map(|_| unit() as f32).collect();
+        let (areas_px, grid, coverage, seen) = (vec![4, 5, 4, 4, 5, 4, 4, 5, 4], (3, 3), unit(), unit() < 0.5);
+        facts.views = vec![ViewFacts { cells, areas_px, grid, coverage, seen, ..ViewFacts::default() }];
         (facts.action_linear_m_per_s, facts.action_angular_rad_per_s) = (unit(), unit() - 0.5);
         (facts.linear_m_per_s, facts.angular_rad_per_s) = (unit() * 2.0 - 1.0, unit() - 0.5);
-        (facts.seen, facts.contact, facts.fallen) = (unit() < 0.5, unit() < 0.5, unit() < 0.5);
+        (facts.contact, facts.fallen) = (unit() < 0.5, unit() < 0.5);
         (facts.state, facts.action) = ((unit() * 64.0) as usize, (unit() * 14.0) as usize);
         (facts.step, facts.since_recovery) = ((unit() * 1000.0) as u64, (unit() * 5.0) as u64);
     }
