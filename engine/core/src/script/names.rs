@@ -13,6 +13,7 @@ use crate::judge::explain;
 use crate::judge::fact_table::takes_arguments;
 use crate::judge::functions::{FUNCTIONS, WINDOWS};
 use crate::judge::needs::Needs;
+use crate::settings::UNNAMED_VIEW;
 use rhai::{AST, ASTNode, Expr, FnCallExpr, Position, Stmt};
 use std::collections::BTreeSet;
 
@@ -66,6 +67,15 @@ pub(super) fn check_names(
     names.walk(&ast.clone_functions_only());
     let functions: Vec<String> = names.own.into_iter().map(|(name, _)| name).collect();
     names.unknown.tell(code, &tree.known.variables, &functions, mistakes)
+}
+
+/// Whether a node is an argument of `state`, or a part of one.
+fn is_in_state(path: &[ASTNode<'_>]) -> bool {
+    let call = |node: &ASTNode<'_>| match node {
+        ASTNode::Stmt(Stmt::FnCall(call, _)) | ASTNode::Expr(Expr::FnCall(call, _)) => call.name == "state",
+        _ => false,
+    };
+    path.iter().any(call)
 }
 
 /// Whether a form stands where it may: at the top level by itself; `bins` as an argument of `state` there.
@@ -176,6 +186,7 @@ impl Names<'_> {
             }
             Some(ASTNode::Expr(Expr::MethodCall(call, position))) => self.called(call, *position, in_rule, 1),
             Some(ASTNode::Expr(expr @ (Expr::Dot(..) | Expr::Index(..)))) => self.chain(expr, in_rule),
+            Some(ASTNode::Expr(expr @ Expr::Variable(..))) if !in_rule && is_in_state(path) => self.bare_part(expr),
             Some(ASTNode::Expr(expr @ Expr::Variable(..))) => self.variable(expr, in_rule),
             _ => {}
         }
@@ -184,6 +195,17 @@ impl Names<'_> {
     fn bins_elsewhere(&mut self, position: Position) {
         let message = "bins stands inside state(...)".to_owned();
         self.mistake("E-SCRIPT-RULE", position, message, "found here", "write state(bins(laser.front, [0.5, 1.0]));");
+    }
+
+    /// A fact in `state(...)` that is not told apart by ranges.
+    fn bare_part(&mut self, expr: &Expr) {
+        let Some(Access { root, is_local: false, position, .. }) = Access::of(expr) else { return };
+        if self.is_group(root) || self.measures.iter().any(|name| name == root) {
+            let message = "a value in a state is told apart by ranges".to_owned();
+            let help = "write bins(laser.front, [0.5, 1.0]), or a view by its name in quotes";
+            return self.mistake("E-SCRIPT-SETTING", position, message, "which ranges?", help);
+        }
+        self.variable(expr, false);
     }
 
     fn is_given_to_unknown(&self, path: &[ASTNode<'_>]) -> bool {
@@ -207,6 +229,9 @@ impl Names<'_> {
 
     fn variable(&mut self, expr: &Expr, in_rule: bool) {
         let Some(Access { root, is_local: false, position, .. }) = Access::of(expr) else { return };
+        if root == UNNAMED_VIEW && !self.is_group(root) {
+            return self.no_group(root, position);
+        }
         let is_group = self.is_group(root) && !self.code.defines(root) || self.measures.iter().any(|name| name == root);
         if !is_group && !matches!(root, "facts" | "calibrated") {
             if matches!(root, "test" | "untrained") && self.figures {

@@ -48,6 +48,7 @@ pub(super) fn register(engine: &mut Engine) {
 
 fn next(symbols: &[ImmutableString], ahead: &str, _: &mut Dynamic) -> Next {
     match symbols {
+        [.., last] if last.as_str() == ")" => Ok(None),
         [_] => expect("(", ahead, "after 'bins' comes a bracket: bins(laser.front, [0.5, 1.0])"),
         [_, _] if matches!(ahead, ")" | ",") => {
             wrong("bins needs a value to be told apart: bins(laser.front, [0.5, 1.0])")
@@ -57,7 +58,6 @@ fn next(symbols: &[ImmutableString], ahead: &str, _: &mut Dynamic) -> Next {
         [_, _, _, _, _] => {
             expect(")", ahead, "bins takes a value and the edges of its ranges: bins(laser.front, [0.5, 1.0])")
         }
-        [.., last] if last.as_str() == ")" => Ok(None),
         _ => wrong("bins takes a value and the edges of its ranges: bins(laser.front, [0.5, 1.0])"),
     }
 }

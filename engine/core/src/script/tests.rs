@@ -9,6 +9,7 @@ mod running;
 mod same;
 mod success;
 mod types;
+mod views;
 mod words;
 
 use super::*;

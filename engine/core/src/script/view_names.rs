@@ -64,7 +64,7 @@ pub(super) struct ViewNames {
 impl ViewNames {
     /// Found in the text: `plain` is without what stands in quotes, `text` with it.
     pub(super) fn of(code: &Code) -> Self {
-        if !begins_a_statement(code, "view", |tail| tail.starts_with('(')) || code.defines("view") {
+        if !begins_a_statement(code, "view", |tail| tail.starts_with('(')) || code.function("view").is_some() {
             return Self { names: Vec::new(), unnamed: true };
         }
         let names = calls(&code.plain, "view").filter_map(|(_, open)| {

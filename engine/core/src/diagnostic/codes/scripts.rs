@@ -140,6 +140,13 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          true. Two limits are two comparisons: 0.3 < laser.front && laser.front < 0.6.",
     ),
     (
+        "E-SCRIPT-VIEW",
+        Kind::Input,
+        "A view has a name that cannot be one, or a view is named that the script does not have.\n\
+         The name is a word in small letters, in quotes: view(\"red\", filter(\"colour\")). Its facts are then red.seen, \
+         red.bearing_deg and so on; a bare filter or grid makes the view without a name, whose facts are camera.seen and so on.",
+    ),
+    (
         "E-SCRIPT-WINDOW",
         Kind::Input,
         "Something cannot be remembered from step to step as it is written.\n\

@@ -96,7 +96,6 @@ rule \"a\" when laser.right > FAR => 1;\nrule \"b\" when laser.right > near => h
 #[test]
 fn what_an_unknown_call_is_given_is_not_looked_at() {
     expect("rule \"a\" when camera.colour(laser.lft) == \"red\" => 1;", &[(1, "colour")]);
-    expect(&format!("state([laser.left, laser.front]); {RULE}"), &[(1, "state")]);
     expect("rule \"a\" when wave(laser.rigth, laser[999]) > 1 => 1;", &[(1, "wave")]);
     expect("fn reward(facts) { facts.laser.mode(nothing, 1 / 2) }", &[(1, "mode")]);
     // What stands beside it is.
