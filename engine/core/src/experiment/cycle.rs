@@ -81,6 +81,7 @@ impl<R: Robot> Cycle<R> {
             potential: 0.0,
             laser_range_m: (settings.laser.min_range_m, settings.laser.max_range_m),
         };
+        cycle.observation.ground = cycle.judge.reads_ground().then(Default::default);
         cycle.perceive()?;
         cycle.calibrate()?;
         cycle.rest()?;
@@ -118,6 +119,7 @@ impl<R: Robot> Cycle<R> {
     pub(super) fn swap_judge(&mut self, plan: &Plan) -> Result<()> {
         self.judge = plan.judge()?;
         self.eyes[0].look_for(self.judge.looks());
+        self.observation.ground = self.judge.reads_ground().then(Default::default);
         self.potential = 0.0;
         self.calibrate()?;
         self.rest()
@@ -224,6 +226,7 @@ impl<R: Robot> Cycle<R> {
         let facts = self.judge.facts_mut();
         facts.ranges_m.clone_from(&self.observation.scan.ranges_m);
         self.eyes[0].tell(&mut facts.views);
+        facts.ground = self.observation.ground.unwrap_or_default();
         facts.state = self.states[0];
         facts.action = action;
         facts.action_linear_m_per_s = twist.linear_m_per_s;

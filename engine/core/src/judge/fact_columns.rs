@@ -44,6 +44,8 @@ pub enum Unit {
     Seconds,
     /// A share, 0 to 1.
     Share,
+    /// Grey levels, 0 to 255.
+    GreyLevels,
     /// Halves of the image's width, positive to the left.
     HalfImages,
     /// The number of a beam, from 0.
@@ -118,6 +120,7 @@ impl Unit {
             Self::Degrees => "degrees",
             Self::Seconds => "seconds",
             Self::Share => "share",
+            Self::GreyLevels => "grey levels",
             Self::HalfImages => "half images",
             Self::Beam => "beam",
             Self::Beams => "beams",

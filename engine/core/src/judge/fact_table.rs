@@ -7,10 +7,11 @@ use super::fact_columns::Reach::{
     Accident, Actions, Any, Beams, Between, Commanded, Laser, Measured, Seen, States, Steps,
 };
 use super::fact_columns::Unit::{
-    Degrees, HalfImages, Metres, MetresPerSecond, RadiansPerSecond, Seconds, Share, Without as NoUnit,
+    Degrees, GreyLevels, HalfImages, Metres, MetresPerSecond, RadiansPerSecond, Seconds, Share, Without as NoUnit,
 };
 use super::fact_columns::{Beam, Getter, Reach, Unit};
 use super::facts::{decimal, greatest, least, mean};
+use super::ground_facts::{brightness, hue_deg, saturation};
 
 /// One row of the list of facts.
 #[derive(Debug, Clone, Copy)]
@@ -45,6 +46,7 @@ pub(crate) const GROUPS: &[(&str, &str)] = &[
     ("state", "What the learner sees."),
     ("time", "Steps and seconds counted."),
     ("odometry", "What the wheels counted since the attempt began: it drifts, since slip and noise are in it."),
+    ("ground", "The ground under three sensors with lamps of their own: paint and floor, without light or shadow."),
     ("stage", "What the robot is about, in a script with `stages`."),
     ("previous", "The facts of the step before: `previous.laser.front`, `previous.action.angular`."),
 ];
@@ -125,6 +127,11 @@ facts! {
     OdometryTurned: odometry "turned_deg", Degrees, Any, NoBeam, Number(|f| f.odometry.turned_rad.to_degrees()), "Turn counted by the wheels, positive to the left, not wrapped.";
     OdometryAway: odometry "away_m", Metres, Steps, NoBeam, Number(|f| f.odometry.away_m()), "Straight distance to where the attempt began, by dead reckoning.";
     OdometryBearing: odometry "bearing_deg", Degrees, Between(-180.0, 180.0), NoBeam, Number(|f| f.odometry.bearing_deg()), "The bearing of that place, positive to the left.";
+    GroundBrightness: ground "brightness", GreyLevels, Between(0.0, 255.0), NoBeam, Number(|f| brightness(f.ground[0])), "How bright the ground is under the middle; 0 off the ground.";
+    GroundLeft: ground "left", GreyLevels, Between(0.0, 255.0), NoBeam, Number(|f| brightness(f.ground[1])), "The same `ground.aside_m` to the left.";
+    GroundRight: ground "right", GreyLevels, Between(0.0, 255.0), NoBeam, Number(|f| brightness(f.ground[2])), "The same to the right.";
+    GroundHue: ground "hue_deg", Degrees, Between(0.0, 360.0), NoBeam, Number(|f| hue_deg(f.ground[0])), "Its hue under the middle, as filter `colour` counts it: red 0, green 120; 0 of grey.";
+    GroundSaturation: ground "saturation", Share, Between(0.0, 1.0), NoBeam, Number(|f| saturation(f.ground[0])), "Its saturation under the middle, as filter `colour` counts it.";
     StageIndex: stage "index", NoUnit, Between(0.0, 15.0), NoBeam, Whole(|f| f.stage.index as i64), "The number of the stage, from 0, in the order of `stages`.";
     StageSteps: stage "steps", Unit::Steps, Steps, NoBeam, Whole(|f| whole(f.stage.steps)), "Steps since it was entered.";
     StageSeconds: stage "seconds", Seconds, Steps, NoBeam, Number(|f| f.stage.seconds), "Time since it was entered.";

@@ -32,6 +32,8 @@ pub struct Facts {
     pub since_recovery: u64,
     /// The laser's least and greatest range, metres.
     pub laser_range_m: (f64, f64),
+    /// The colours of the ground under the middle, left and right sensor: red, green, blue.
+    pub ground: [[u8; 3]; 3],
     /// How far the laser looks from the first beam to the last, degrees.
     pub laser_view_deg: f64,
     /// Time since the attempt began, seconds; worked out by the judge, as is all that follows.

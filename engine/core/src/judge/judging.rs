@@ -226,6 +226,12 @@ impl Judge {
         self.present.compiled.remembers()
     }
 
+    /// Whether the script reads what the ground looks like.
+    #[must_use]
+    pub fn reads_ground(&self) -> bool {
+        self.present.compiled.reads_ground
+    }
+
     /// What the script reads of each view besides its grid.
     #[must_use]
     pub fn looks(&self) -> &[Look] {

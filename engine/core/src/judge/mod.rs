@@ -12,6 +12,7 @@ pub(crate) mod fact_columns;
 pub(crate) mod fact_table;
 pub(crate) mod facts;
 pub(crate) mod functions;
+mod ground_facts;
 mod judging;
 pub(crate) mod memory;
 pub(crate) mod needs;

@@ -67,6 +67,8 @@ views! {
     TimeView "time",
     /// `odometry`
     OdometryView "odometry",
+    /// `ground`
+    GroundView "ground",
     /// `stage`
     StageView "stage",
     /// `previous`, whose groups are those of the step before

@@ -16,7 +16,8 @@ pub use simulated::SimulatedRobot;
 /// What the step loop needs of a robot.
 pub trait Robot {
     /// Fills `observation` with what the sensors measure now. The image comes in the format that it has when it is handed
-    /// in, which is what the observation asks for, or in colour, which every filter chain takes.
+    /// in, which is what the observation asks for, or in colour, which every filter chain takes. The ground is looked at
+    /// only where the observation has room for its colours.
     ///
     /// # Errors
     /// If a sensor is broken: a blank or frozen camera.

@@ -6,7 +6,7 @@ use super::{Recovery, Robot, Whereabouts};
 use crate::diagnostic::Result;
 use crate::geometry::{Pose, Twist};
 use crate::sensors::observation::{Image, Observation};
-use crate::sensors::{Camera, CameraWatch, Laser, self_test};
+use crate::sensors::{Camera, CameraWatch, GroundSensors, Laser, self_test};
 use crate::settings::{CameraSettings, Settings};
 use crate::world::{Layout, Motion, World};
 
@@ -15,6 +15,7 @@ pub struct SimulatedRobot {
     world: World,
     camera: Camera,
     laser: Laser,
+    ground: GroundSensors,
     watch: CameraWatch,
     recovery: Recovery,
     motion: Motion,
@@ -31,6 +32,7 @@ impl SimulatedRobot {
             .with_mover_speed(settings.movers.speed);
         let camera = Camera::new(&layout.scene, &settings.camera, seed);
         let laser = Laser::new(&layout.scene, &settings.laser, seed);
+        let ground = GroundSensors::new(&layout.scene, &settings.ground);
         let mut recovery = Recovery::new(&settings.recovery, seed);
         let start = recovery.pose(&world)?;
         world.place(0, start);
@@ -38,7 +40,7 @@ impl SimulatedRobot {
         let mut quiet = Camera::new(&layout.scene, &CameraSettings { noise: 0.0, ..settings.camera.clone() }, seed);
         self_test(&mut quiet, &world.body(0).world_from_robot(), world.seen_by(0))?;
         let (watch, motion) = (CameraWatch::new(), Motion::default());
-        Ok(Self { world, camera, laser, watch, recovery, motion, moved: false })
+        Ok(Self { world, camera, laser, ground, watch, recovery, motion, moved: false })
     }
 
     /// The truth, for tests and reports only.
@@ -54,6 +56,9 @@ impl Robot for SimulatedRobot {
         self.camera.render(&world_from_robot, self.world.seen_by(0), &mut observation.image);
         self.watch.check(&observation.image, self.moved)?;
         self.laser.scan(&world_from_robot, self.world.seen_by(0), &mut observation.scan);
+        if let Some(colours) = &mut observation.ground {
+            *colours = self.ground.read(&world_from_robot);
+        }
         observation.contact = self.motion.contact;
         observation.fallen = self.motion.fallen;
         observation.odometry = self.motion.odometry;

@@ -168,6 +168,7 @@ impl ReadScript<'_> {
             bins,
             stages,
             counts_way,
+            reads_ground: reads("ground"),
             looks_back,
             reward,
             reward_parts,

@@ -43,6 +43,7 @@ pub(super) const SETUP: &[SetupCall] = &[
     row("robot", "robot(#{ lag_s: 0.15 });", "How the robot moves."),
     row("camera", "camera(#{ tilt_deg: 42 });", "The camera and its mount."),
     row("laser", "laser(#{ tilt_deg: 45 });", "The laser and its mount."),
+    row("ground", "ground(#{ ahead_m: 0.1, aside_m: 0.15 });", "Three sensors that look down at paint and floor."),
     row("grid", "grid(#{ rows: 3, columns: 3 });", "How a filtered image becomes a state."),
     row("learner", "learner(\"ttd\", #{ step_size: 0.2 });", "The way of learning and its parameters."),
     row("recovery", "recovery(\"nearest\", #{ yaw_deg: 8.6 });", "What `then recover` does."),

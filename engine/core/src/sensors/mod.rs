@@ -2,7 +2,7 @@
 //!
 //! Both sensors work from the flat faces of solids (`surface`). The camera finds which face is seen in which run of
 //! each row (`view`, `drawing`, `spans`), lists the runs pixel by pixel (`stretches`) and
-//! colours them (`texture`, `painting`, `canvas`, `luma`). Images from elsewhere come as
+//! colours them (`texture`, `painting`, `canvas`, `luma`). Three sensors look at the ground (`ground`). Images from elsewhere come as
 //! photographs (`photograph`, with the cargo feature `photographs`).
 
 pub mod observation;
@@ -10,6 +10,7 @@ pub mod observation;
 mod camera;
 mod canvas;
 mod drawing;
+mod ground;
 mod laser;
 mod lens;
 mod luma;
@@ -29,6 +30,7 @@ mod watch;
 mod tests;
 
 pub use camera::Camera;
+pub use ground::{GroundColours, GroundSensors};
 pub use laser::Laser;
 #[cfg(feature = "photographs")]
 pub use photograph::{load_photograph, photograph_files};

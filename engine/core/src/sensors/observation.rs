@@ -1,5 +1,6 @@
 //! What the robot measures in one step, and nothing else.
 
+use super::GroundColours;
 use crate::geometry::Twist;
 use filter_api::{FilterError, Format, Frame};
 
@@ -66,6 +67,8 @@ pub struct Observation {
     pub fallen: bool,
     /// Speeds from the wheel encoders.
     pub odometry: Twist,
+    /// The colours of the ground under the robot; nothing where nobody asks for them.
+    pub ground: Option<GroundColours>,
 }
 
 impl Observation {
@@ -78,6 +81,7 @@ impl Observation {
             contact: false,
             fallen: false,
             odometry: Twist::default(),
+            ground: None,
         }
     }
 }

@@ -35,6 +35,8 @@ pub struct Settings {
     pub camera: CameraSettings,
     /// The laser and its mount.
     pub laser: LaserSettings,
+    /// The sensors that look down.
+    pub ground: GroundSettings,
     /// The way of learning and its parameters.
     pub learner: LearnerSettings,
     /// What `then recover` does.
@@ -104,6 +106,14 @@ pub struct LaserSettings {
     pub min_range_m: f64,
     pub max_range_m: f64,
     pub noise_m: f64,
+}
+
+/// Three sensors that look down at the ground.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs, reason = "every field is documented in the table of settings")]
+pub struct GroundSettings {
+    pub ahead_m: f64,
+    pub aside_m: f64,
 }
 
 /// The way of learning and its parameters (Table 1 of the paper).
@@ -206,6 +216,7 @@ impl Default for Settings {
                 max_range_m: 8.192,
                 noise_m: 0.005,
             },
+            ground: GroundSettings { ahead_m: 0.1, aside_m: 0.15 },
             learner: LearnerSettings {
                 kind: LearnerKind::Ttd,
                 step_size: 0.2,

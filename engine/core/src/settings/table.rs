@@ -154,6 +154,8 @@ settings! {
     laser.min_range_m, "metres", Number(0.0, 10.0), "Nothing nearer is measured; nearer things read as this.";
     laser.max_range_m, "metres", Number(0.1, 100.0), "Nothing seen reads as this.";
     laser.noise_m, "metres", Number(0.0, 1.0), "Deviation of the range noise.";
+    ground.ahead_m, "metres", Number(-1.0, 1.0), "Place of the sensors that look down, ahead of the robot's centre.";
+    ground.aside_m, "metres", Number(0.0, 1.0), "How far to the left and right of the middle one the two others are.";
     grid.rows in view, "cells", Whole(1, 16), "Rows of the grid over the filtered image.";
     grid.columns in view, "cells", Whole(1, 16), "Columns of the grid.";
     grid.occupied in view, "share", Number(0.0001, 1.0), "Share of foreground pixels from which a cell is occupied.";
