@@ -7,8 +7,8 @@ use crate::robot::Robot;
 use crate::sensors::observation::{Image, Observation};
 use crate::state::{Grid, StateMap};
 
-use super::{Eyes, Plan, Step};
-use filter_api::{Descriptor, Format};
+use super::{Eyes, Plan, Step, ViewStage};
+use filter_api::Format;
 
 /// From the first beam of the laser to the last, degrees.
 const LASER_VIEW_DEG: f64 = 180.0;
@@ -282,9 +282,9 @@ impl<R: Robot> Cycle<R> {
         self.eyes[0].chain().mask()
     }
 
-    /// What each of the script's own filters made of the last image, in order.
-    pub fn stages(&self) -> impl Iterator<Item = (&'static Descriptor, &[u8])> {
-        self.eyes[0].chain().stages()
+    /// What each of the script's own filters made of the last image, view by view, in order.
+    pub fn stages(&self) -> impl Iterator<Item = ViewStage<'_>> {
+        self.eyes[0].stages()
     }
 
     /// The map that makes the script's own states.

@@ -5,8 +5,28 @@ use crate::filter::Chain;
 use crate::judge::{LineFacts, Look, PatchFacts, ViewFacts};
 use crate::sensors::CameraRays;
 use crate::sensors::observation::Image;
-use crate::settings::{CameraSettings, Settings};
+use crate::settings::{CameraSettings, Settings, UNNAMED_VIEW, ViewSettings};
 use crate::state::{Grid, Patch, PatchFinder, Percept, StateMap, floor_line};
+use filter_api::Descriptor;
+
+/// What one filter made of an image.
+#[derive(Debug, Clone, Copy)]
+pub struct ViewStage<'a> {
+    /// The view whose filter it is, if it has a name.
+    pub view: Option<&'a str>,
+    /// The filter.
+    pub filter: &'static Descriptor,
+    /// A byte for each pixel and channel, row-major.
+    pub pixels: &'a [u8],
+}
+
+impl ViewStage<'_> {
+    /// `sobel`, or `red: colour` of a view with a name.
+    #[must_use]
+    pub fn name(&self) -> String {
+        self.view.map_or_else(|| self.filter.name.to_owned(), |view| format!("{view}: {}", self.filter.name))
+    }
+}
 
 /// What turns an image into a state.
 pub struct Eyes {
@@ -15,6 +35,8 @@ pub struct Eyes {
     /// The grid of each view.
     pub(super) grids: Vec<Grid>,
     pub(super) map: Box<dyn StateMap>,
+    /// What the views are called; nothing for the view without a name.
+    names: Vec<Option<String>>,
     /// What is looked for in the mask of each view besides, and the rays of the camera.
     looks: Vec<Look>,
     finder: PatchFinder,
@@ -29,8 +51,10 @@ impl Eyes {
     pub(super) fn new(chains: Vec<Chain>, grids: Vec<Grid>, map: Box<dyn StateMap>, settings: &Settings) -> Self {
         let CameraSettings { width_px, height_px, .. } = settings.camera;
         let (width_px, height_px) = (width_px as usize, height_px as usize);
+        let named = |view: &ViewSettings| (view.name != UNNAMED_VIEW).then(|| view.name.clone());
+        let names = settings.views().map(named).take(chains.len()).collect();
         let (looks, rays) = (Vec::new(), CameraRays::new(&settings.camera));
-        Self { chains, grids, map, looks, finder: PatchFinder::default(), rays, width_px, height_px }
+        Self { chains, grids, map, names, looks, finder: PatchFinder::default(), rays, width_px, height_px }
     }
 
     /// The same eyes with another map.
@@ -115,6 +139,14 @@ impl Eyes {
                 offset_m: line.offset_m.clamp(-10.0, 10.0),
                 heading_deg: libm::atan(line.slope).to_degrees(),
             }
+        })
+    }
+
+    /// What each filter of each view made of the image that was looked at last.
+    pub(super) fn stages(&self) -> impl Iterator<Item = ViewStage<'_>> {
+        self.chains.iter().zip(&self.names).flat_map(|(chain, view)| {
+            let stage = |(filter, pixels)| ViewStage { view: view.as_deref(), filter, pixels };
+            chain.stages().map(stage)
         })
     }
 

@@ -43,7 +43,7 @@ pub use combination::Member;
 pub use cycle::Cycle;
 pub use disagreement::{CombinationFigures, Disagreement, DisagreementFigures, Disagreements, MemberFigures};
 pub use drive::{Choice, Chooser, Each, Observer, drive};
-pub use eyes::Eyes;
+pub use eyes::{Eyes, ViewStage};
 pub use learning::{BrokenOff, Learned, Learning, Progress, learn, learn_into};
 pub use ledger::{Ledger, LedgerLeg, MOST_STEPS, Record, RecordShape};
 pub use legs::Leg;

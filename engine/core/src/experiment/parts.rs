@@ -83,8 +83,8 @@ impl Parts<'_> {
 
     /// A fresh map from what is perceived to states.
     pub(super) fn state_map(&self) -> Result<Box<dyn StateMap>> {
-        let Settings { state, stages, view, further_views, .. } = self.settings;
-        if state.is_empty() && stages.is_empty() && further_views.is_empty() {
+        let Settings { state, stages, view, .. } = self.settings;
+        if !self.settings.has_parts() {
             return Ok(Box::new(GridMap::new(&view.grid, self.grid(view)?)));
         }
         let of_view = |(view, settings): (usize, &ViewSettings)| {

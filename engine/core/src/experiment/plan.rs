@@ -198,6 +198,17 @@ impl Plan {
         self.parts().state_map()
     }
 
+    /// Rows and columns of the cells by which states are drawn: those of the first view in the state.
+    ///
+    /// # Errors
+    /// As [`Plan::grid`].
+    pub fn drawn_grid(&self) -> Result<(usize, usize)> {
+        let own = self.grid()?.size();
+        let map = self.state_map()?;
+        let cells = (map.states() > 0).then(|| map.describe(0).cells).flatten();
+        Ok(cells.map_or(own, |cells| (cells.rows, cells.columns)))
+    }
+
     /// Fresh eyes: chain, grid and state map.
     ///
     /// # Errors

@@ -19,26 +19,37 @@ pub struct Snapshot {
     pub shares: Vec<f32>,
     /// Whether each cell is occupied by itself.
     pub occupied: Vec<bool>,
-    /// The cells that the state stands for, filled columns included; none if it stands for something else.
+    /// The cells that the state stands for, filled columns included; as occupied if it stands for something else.
     pub filled: Vec<bool>,
     /// The state.
     pub state: usize,
 }
 
 impl Snapshot {
+    /// The cells of the first view's grid for which the present state stands; those that are occupied by themselves if it stands
+    /// for something else.
+    #[must_use]
+    pub fn filled<R: Robot>(cycle: &Cycle<R>) -> Vec<bool> {
+        let grid = cycle.grid();
+        let cells = cycle.state_map().describe(cycle.state()).cells;
+        match cells.filter(|cells| (cells.rows, cells.columns) == grid.size()) {
+            Some(cells) => cells.filled,
+            None => grid.occupied().to_vec(),
+        }
+    }
+
     /// The present frame.
     #[must_use]
     pub fn of<R: Robot>(cycle: &Cycle<R>) -> Self {
         let grid = cycle.grid();
         let counts = grid.counts().iter().enumerate();
-        let described = cycle.state_map().describe(cycle.state());
         Self {
             image: cycle.robot().photograph().unwrap_or_else(|| cycle.observation().image.clone()),
             mask: cycle.mask().to_vec(),
             shares: counts.map(|(cell, count)| *count as f32 / grid.area_px(cell) as f32).collect(),
             grid: grid.size(),
             occupied: grid.occupied().to_vec(),
-            filled: described.cells.map_or_else(Vec::new, |cells| cells.filled),
+            filled: Self::filled(cycle),
             state: cycle.state(),
         }
     }

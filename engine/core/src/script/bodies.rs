@@ -2,11 +2,10 @@
 
 use super::access::{Access, Link};
 use super::outline::{BeamLoop, Gathers, ScriptOutline, UnusedName};
-use super::positions::body_end;
+use super::positions::{body_end, span};
 use super::reader::{Local, OutlineReader};
 use super::source::Code;
-use super::syntax::is_success_expr;
-use super::syntax::written_rules;
+use super::syntax::{is_success_expr, written_measures, written_rules};
 use crate::judge::rule::CompiledRule;
 use rhai::{AST, ASTNode, Expr, Scope, Stmt};
 use std::collections::{BTreeMap, BTreeSet};
@@ -75,6 +74,8 @@ fn read(reader: &OutlineReader<'_>, ast: &AST, outline: &mut ScriptOutline) {
     });
     outline.comparisons.sort_by_key(|compared| compared.span.start);
     outline.loops.sort_by_key(|found| found.span.start);
+    let measures = written_measures(ast.statements());
+    outline.measures = measures.iter().map(|one| (one.name.to_owned(), span(reader.code, one.expression))).collect();
     outline.groups = groups.into_iter().collect();
     outline.unused = unused(reader, ast, &functions);
 }

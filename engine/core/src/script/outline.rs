@@ -112,6 +112,8 @@ pub struct ScriptOutline {
     pub(super) reward_recovers: bool,
     /// Rules that `fired` or `since` name.
     pub remembered: Vec<String>,
+    /// The measures, each with the bytes of its expression.
+    pub measures: Vec<(String, Range<usize>)>,
     /// Names that nothing uses.
     pub unused: Vec<UnusedName>,
 }
@@ -121,6 +123,21 @@ impl ScriptOutline {
     #[must_use]
     pub fn recovers(&self) -> bool {
         self.reward_recovers || self.rules.iter().any(|rule| rule.then.is_some())
+    }
+
+    /// A part of the script's text, followed by the expressions of the measures that it names, and of those that these name.
+    #[must_use]
+    pub fn with_measures(&self, text: &str, part: &str) -> String {
+        let mut whole = part.to_owned();
+        // A measure reads only those above it.
+        for (name, span) in self.measures.iter().rev() {
+            let part = |c: char| c.is_alphanumeric() || c == '_';
+            if whole.split(|c| !part(c)).any(|word| word == name) {
+                whole.push(' ');
+                whole.push_str(&text[span.clone()]);
+            }
+        }
+        whole
     }
 
     /// Every comparison: of rules, then of functions.

@@ -102,6 +102,12 @@ impl Settings {
         std::iter::once(&self.view).chain(&self.further_views)
     }
 
+    /// Whether a state is more than the number of one grid.
+    #[must_use]
+    pub fn has_parts(&self) -> bool {
+        !(self.state.is_empty() && self.stages.is_empty() && self.further_views.is_empty())
+    }
+
     /// All views, to be changed.
     pub fn views_mut(&mut self) -> impl Iterator<Item = &mut ViewSettings> {
         std::iter::once(&mut self.view).chain(&mut self.further_views)

@@ -64,7 +64,7 @@ pub(super) fn draw_frame(folder: &Path, plan: &Plan, tested: &TestRun) -> Result
 }
 
 fn draw_policy(folder: &Path, plan: &Plan, learned: &Learned) -> Result<()> {
-    let (map, (rows, columns)) = (plan.state_map()?, plan.grid()?.size());
+    let (map, (rows, columns)) = (plan.state_map()?, plan.drawn_grid()?);
     let policy_of = &learned.policy;
     let state = |(state, row): (usize, &Option<PolicyRow>)| {
         let row = row.as_ref()?;

@@ -18,6 +18,7 @@ mod stages;
 mod trial;
 mod units;
 mod verdict;
+mod views;
 
 pub use exploit::{Exploit, Exploits};
 pub use finding::{Finding, Severity};
@@ -128,6 +129,7 @@ pub fn read(plan: &Plan) -> Vec<Finding> {
     choice::written(plan, &mut findings);
     outcome::check_goals(plan, &mut findings);
     stages::check_stages(plan, &mut findings);
+    views::check_views(plan, &mut findings);
     findings
 }
 

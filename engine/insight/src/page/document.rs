@@ -150,7 +150,7 @@ impl Document {
         let far = world.bounds_m.iter().fold(1.0, |far: f64, at| far.max(at.abs()));
         let beams = laser.beams as usize;
         let every = beams.saturating_sub(1).div_ceil(MOST_SCAN_BEAMS - 1).max(1);
-        let (rows, columns) = plan.grid()?.size();
+        let (rows, columns) = plan.drawn_grid()?;
         let rules = plan.behaviour.rules().iter().enumerate();
         Ok(Self {
             format: FORMAT,
@@ -226,10 +226,11 @@ fn bytes_of_next(bytes: usize, document: &Document) -> usize {
 
 fn settings(plan: &Plan) -> Vec<SettingView> {
     let defaults = Settings::default();
-    let filters = plan.settings.view.filters.iter().map(|filter| {
+    let of_views = plan.settings.views().flat_map(|view| view.filters.iter().map(move |filter| (view, filter)));
+    let filters = of_views.map(|(view, filter)| {
         let parameters: Vec<String> = filter.parameters.iter().map(|(name, value)| format!("{name} {value}")).collect();
         SettingView {
-            name: format!("filter.{}", filter.name),
+            name: view.place(&format!("filter.{}", filter.name)),
             value: if parameters.is_empty() { "as it is".to_owned() } else { parameters.join(", ") },
             unit: "",
             changed: true,

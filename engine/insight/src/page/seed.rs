@@ -201,7 +201,7 @@ fn states(plan: &Plan, policy: &Policy, with_values: bool) -> Result<Vec<StateRo
         let (row, (best, value)) = (policy.rows().get(state)?.as_ref()?, policy.best(state)?);
         let described = map.describe(state);
         let filled = described.cells.map_or_else(Vec::new, |cells| cells.filled);
-        let text = if plan.settings.stages.is_empty() { String::new() } else { described.text };
+        let text = if plan.settings.has_parts() { described.text } else { String::new() };
         let cells = filled.iter().map(|filled| if *filled { '1' } else { '0' }).collect();
         let values = if with_values { row.values.iter().copied().map(rounded).collect() } else { Vec::new() };
         Some(StateRow { state, cells, text, visits, best, value: rounded(value), values })

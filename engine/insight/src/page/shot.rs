@@ -66,9 +66,9 @@ impl ShotMaker<'_> {
         let size_px = (image.width_px, image.height_px);
         let camera = data_address(&image.pixels, size_px, Format::Rgb)?;
         let mut stages = vec![StagePicture { name: "camera".to_owned(), picture: camera }];
-        for (filter, pixels) in cycle.stages() {
-            let picture = data_address(pixels, size_px, filter.writes)?;
-            stages.push(StagePicture { name: filter.name.to_owned(), picture });
+        for stage in cycle.stages() {
+            let picture = data_address(stage.pixels, size_px, stage.filter.writes)?;
+            stages.push(StagePicture { name: stage.name(), picture });
         }
         let thousandths = |share: f32| (share * 1000.0).round() / 1000.0;
         Ok(Shot {

@@ -4,7 +4,7 @@ use std::io::IsTerminal;
 use std::path::Path;
 
 use engine::diagnostic::{Diagnostic, Result, all_codes, code_page, excerpt, nearest_name, printable};
-use engine::experiment::{Phase, Plan, Playback, RuleReasons, StepReasons};
+use engine::experiment::{Phase, Plan, Playback, RuleReasons, Snapshot, StepReasons, ViewStage};
 use engine::robot::Robot;
 use insight::folder::create_folder;
 use insight::report::{FrameData, FramePanel, Picture, frame};
@@ -97,15 +97,17 @@ fn draw_step(plan: &Plan, playback: &Playback<'_>, title: &str) -> Result<Pictur
     let cycle = playback.cycle();
     let image = &cycle.robot().photograph().unwrap_or_else(|| cycle.observation().image.clone());
     let mut panels = vec![FramePanel::image("camera", image)];
-    panels.extend(cycle.stages().map(|(filter, pixels)| FramePanel {
-        name: filter.name,
-        format: filter.writes,
-        pixels,
+    let stages: Vec<ViewStage<'_>> = cycle.stages().collect();
+    let names: Vec<String> = stages.iter().map(ViewStage::name).collect();
+    panels.extend(stages.iter().zip(&names).map(|(stage, name)| FramePanel {
+        name,
+        format: stage.filter.writes,
+        pixels: stage.pixels,
     }));
     let grid = cycle.grid();
     let shares: Vec<f32> =
         grid.counts().iter().enumerate().map(|(cell, count)| *count as f32 / grid.area_px(cell) as f32).collect();
-    let (rows, columns) = grid.size();
+    let ((rows, columns), filled) = (grid.size(), Snapshot::filled(cycle));
     frame(&FrameData {
         title: &format!("{}, {title}", plan.behaviour.name()),
         width_px: image.width_px,
@@ -115,7 +117,7 @@ fn draw_step(plan: &Plan, playback: &Playback<'_>, title: &str) -> Result<Pictur
         columns,
         shares: &shares,
         occupied: grid.occupied(),
-        filled: &cycle.state_map().describe(cycle.state()).cells.map_or_else(Vec::new, |cells| cells.filled),
+        filled: &filled,
         state: cycle.state(),
     })
 }
@@ -134,7 +136,7 @@ fn print(console: &mut Console, plan: &Plan, report: &StepReport) -> std::result
         false => " (the best one known)",
     };
     console.line(&format!("action:    {}{how}", motion(reasons.motion)))?;
-    let columns = plan.settings.view.grid.columns as usize;
+    let (_, columns) = plan.drawn_grid()?;
     let (from, to) = (icon(&reasons.state.cells, columns), icon(&reasons.next_state.cells, columns));
     for (line, (from, to)) in from.iter().zip(&to).enumerate() {
         let arrow = if line == 0 { "->" } else { "  " };
@@ -144,7 +146,7 @@ fn print(console: &mut Console, plan: &Plan, report: &StepReport) -> std::result
         };
         console.line(&format!("           {from}  {arrow}  {to}{names}"))?;
     }
-    if !plan.settings.stages.is_empty() {
+    if plan.settings.has_parts() {
         let (from, to) = (&reasons.state.text, &reasons.next_state.text);
         console.line(&format!("           {from}\n           {to}"))?;
     }

@@ -145,7 +145,7 @@ fn write(out: &Path, plan: &Plan, report: &RescoreReport) -> Result<()> {
     };
     let states: Vec<StateChange> = report.states_changed.iter().map(change).collect();
     let title = format!("{}, seed {}, under {}", report.behaviour, report.seed, printable(&report.script));
-    let (rows, columns) = plan.grid()?.size();
+    let (rows, columns) = plan.drawn_grid()?;
     policy_diff(&PolicyDiffData { title: &title, rows, columns, states: &states })?.write(out, "policy-diff")
 }
 
@@ -219,7 +219,7 @@ fn print_states(console: &mut Console, plan: &Plan, report: &RescoreReport) -> s
     if guesses > 0 {
         console.line(&format!("note:      {guesses} of these to an action that the record never tried there"))?;
     }
-    let columns = plan.settings.view.grid.columns as usize;
+    let (_, columns) = plan.drawn_grid()?;
     for entry in changed.iter().take(SHOWN) {
         let guess = |choice: &ChosenAction| match choice.tried {
             0 => "never tried there: a guess".to_owned(),

@@ -87,6 +87,13 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          Let a rule lead on, with then stage and a name, or end the attempt with then goal.",
     ),
     (
+        "W-STATE-LARGE",
+        Kind::Input,
+        "A state of several parts has more than 4096 values, and a table has a row for each.\n\
+         Most of them are met once or never, and nothing is learned of them. Take a part out, make a grid smaller, or tell a \
+         value apart by fewer ranges.",
+    ),
+    (
         "W-SUCCESS-IDLE",
         Kind::Input,
         "A robot that knows nothing, or one that does not look, meets every condition of the script's success.\n\
@@ -98,6 +105,13 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
         Kind::Input,
         "A fact is compared with a number that it never comes near: most often centimetres for metres or degrees for radians.\n\
       Ranges are in metres, speeds in m/s, turns in rad/s, shares from 0 to 1. The label says what this robot can give.",
+    ),
+    (
+        "W-UNSEEN",
+        Kind::Input,
+        "A rule's value reads where something lies, and its condition does not ask whether it is seen.\n\
+         What is not seen reads as the farthest value: a bearing of 180, an offset of 2, a distance of 100; such a step would \
+         count for hundreds of others. Ask for view.seen, or bound the value with min or max.",
     ),
     (
         "W-UNUSED",
