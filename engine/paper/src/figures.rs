@@ -84,7 +84,9 @@ fn typical(measured: &Measured, learn: Learn) -> Option<(&Plan, &Outcome)> {
 
 /// The seed whose one kept frame has the most occupied cells, since an empty frame shows nothing.
 fn richest(measured: &Measured, learn: Learn) -> Option<&Outcome> {
-    let occupied = |outcome: &&Outcome| outcome.tested.snapshot.occupied.iter().filter(|cell| **cell).count();
+    let occupied = |outcome: &&Outcome| {
+        outcome.tested.snapshot.views.iter().flat_map(|view| &view.occupied).filter(|cell| **cell).count()
+    };
     measured.job(learn)?.outcomes.iter().rev().max_by_key(occupied)
 }
 

@@ -7,7 +7,7 @@ use crate::robot::Robot;
 use crate::sensors::observation::{Image, Observation};
 use crate::state::{Grid, StateMap};
 
-use super::{Eyes, Plan, Step, ViewStage};
+use super::{Eyes, Plan, SeenView, Step, ViewStage};
 use filter_api::Format;
 
 /// From the first beam of the laser to the last, degrees.
@@ -274,6 +274,11 @@ impl<R: Robot> Cycle<R> {
     #[must_use]
     pub fn observation(&self) -> &Observation {
         &self.observation
+    }
+
+    /// What each of the script's own views made of the last image.
+    pub fn views(&self) -> impl Iterator<Item = SeenView> {
+        self.eyes[0].views()
     }
 
     /// The last mask of the script's own filters.

@@ -1,5 +1,6 @@
 //! One way of perceiving: filter chains, a grid over the mask of each, and a map from all of them to a state.
 
+use super::SeenView;
 use crate::diagnostic::Result;
 use crate::filter::Chain;
 use crate::judge::{LineFacts, Look, PatchFacts, ViewFacts};
@@ -148,6 +149,12 @@ impl Eyes {
             let stage = |(filter, pixels)| ViewStage { view: view.as_deref(), filter, pixels };
             chain.stages().map(stage)
         })
+    }
+
+    /// What each view made of the image that was looked at last.
+    pub(super) fn views(&self) -> impl Iterator<Item = SeenView> {
+        let views = self.names.iter().zip(&self.chains).zip(&self.grids);
+        views.map(|((name, chain), grid)| SeenView::of(name.as_deref(), chain.mask(), grid))
     }
 
     /// The first view's chain.

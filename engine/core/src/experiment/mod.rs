@@ -55,7 +55,7 @@ pub use run_log::{CHUNK_STEPS, DIGEST_BYTES, RunLog, chained};
 pub use seed_run::{SeedRun, run_seed};
 pub use seeds::in_parallel;
 pub use sight::Sight;
-pub use snapshot::Snapshot;
+pub use snapshot::{SeenView, Snapshot};
 pub use step::Step;
 pub use summary::{ConditionSpread, FigureSpread, Spread, Summary};
 pub use tally::Tally;

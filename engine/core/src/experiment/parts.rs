@@ -8,7 +8,7 @@ use crate::judge::Judge;
 use crate::learner::Mirror;
 use crate::script::{Behaviour, Unread};
 use crate::settings::{PartSettings, Settings, ViewSettings};
-use crate::state::{ComposedMap, Grid, GridMap, MAX_STATES, StateMap, StatePart};
+use crate::state::{ComposedMap, DigitKind, Grid, GridMap, MAX_STATES, StateMap, StatePart};
 
 /// A behaviour with its settings and the filters that it may use.
 pub(super) struct Parts<'a> {
@@ -103,16 +103,16 @@ impl Parts<'_> {
                     let view = views().find(|(_, view)| view.name == *name).map(of_view).transpose()?;
                     parts.extend(view);
                 }
-                PartSettings::Bins { of, .. } => {
-                    let digit = digits.next().unwrap_or_default();
-                    parts.push(StatePart::Digit { name: of.clone(), digit, labels: part.labels() });
+                PartSettings::Bins { of, edges } => {
+                    let (digit, kind) = (digits.next().unwrap_or_default(), DigitKind::Bins(edges.clone()));
+                    parts.push(StatePart::Digit { name: of.clone(), digit, labels: part.labels(), kind });
                 }
             }
         }
         if !stages.is_empty() {
             let (name, digit) = ("stage".to_owned(), digits.next().unwrap_or_default());
             let labels = stages.iter().map(|stage| format!("\"{stage}\"")).collect();
-            parts.push(StatePart::Digit { name, digit, labels });
+            parts.push(StatePart::Digit { name, digit, labels, kind: DigitKind::Stages(stages.clone()) });
         }
         let map = ComposedMap::new(parts);
         match map.count() {

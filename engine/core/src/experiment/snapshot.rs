@@ -5,13 +5,25 @@ use std::ops::ControlFlow;
 use super::{Cycle, Observer, Step};
 use crate::robot::Robot;
 use crate::sensors::observation::Image;
+use crate::state::Grid;
 
 /// One frame with what was made of it.
 #[derive(Debug, Clone)]
 pub struct Snapshot {
     /// The camera image.
     pub image: Image,
-    /// The mask.
+    /// What each view made of it, the first one first.
+    pub views: Vec<SeenView>,
+    /// The state.
+    pub state: usize,
+}
+
+/// What one view made of a frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SeenView {
+    /// What the script calls it, if it has a name.
+    pub name: Option<String>,
+    /// The mask: a byte for each pixel, 0 or 255.
     pub mask: Vec<u8>,
     /// Rows and columns of the grid.
     pub grid: (usize, usize),
@@ -19,37 +31,36 @@ pub struct Snapshot {
     pub shares: Vec<f32>,
     /// Whether each cell is occupied by itself.
     pub occupied: Vec<bool>,
-    /// The cells that the state stands for, filled columns included; as occupied if it stands for something else.
+    /// Whether each cell counts as filled in the grid's number.
     pub filled: Vec<bool>,
-    /// The state.
-    pub state: usize,
+    /// The number of this grid alone.
+    pub number: usize,
+}
+
+impl SeenView {
+    /// Of a mask that was just counted by a grid.
+    #[must_use]
+    pub fn of(name: Option<&str>, mask: &[u8], grid: &Grid) -> Self {
+        let counts = grid.counts().iter().enumerate();
+        Self {
+            name: name.map(str::to_owned),
+            mask: mask.to_vec(),
+            grid: grid.size(),
+            shares: counts.map(|(cell, count)| *count as f32 / grid.area_px(cell) as f32).collect(),
+            occupied: grid.occupied().to_vec(),
+            filled: grid.cells(grid.state()),
+            number: grid.state(),
+        }
+    }
 }
 
 impl Snapshot {
-    /// The cells of the first view's grid for which the present state stands; those that are occupied by themselves if it stands
-    /// for something else.
-    #[must_use]
-    pub fn filled<R: Robot>(cycle: &Cycle<R>) -> Vec<bool> {
-        let grid = cycle.grid();
-        let cells = cycle.state_map().describe(cycle.state()).cells;
-        match cells.filter(|cells| (cells.rows, cells.columns) == grid.size()) {
-            Some(cells) => cells.filled,
-            None => grid.occupied().to_vec(),
-        }
-    }
-
     /// The present frame.
     #[must_use]
     pub fn of<R: Robot>(cycle: &Cycle<R>) -> Self {
-        let grid = cycle.grid();
-        let counts = grid.counts().iter().enumerate();
         Self {
             image: cycle.robot().photograph().unwrap_or_else(|| cycle.observation().image.clone()),
-            mask: cycle.mask().to_vec(),
-            shares: counts.map(|(cell, count)| *count as f32 / grid.area_px(cell) as f32).collect(),
-            grid: grid.size(),
-            occupied: grid.occupied().to_vec(),
-            filled: Self::filled(cycle),
+            views: cycle.views().collect(),
             state: cycle.state(),
         }
     }

@@ -22,7 +22,18 @@ pub enum StatePart {
         digit: usize,
         /// What each of its values stands for.
         labels: Vec<String>,
+        /// How it comes about.
+        kind: DigitKind,
     },
+}
+
+/// How a small number of a state comes about.
+#[derive(Debug, Clone, PartialEq)]
+pub enum DigitKind {
+    /// It is how many of these edges a value has reached; of what is true or false there are none.
+    Bins(Vec<f64>),
+    /// It is the number of a stage.
+    Stages(Vec<String>),
 }
 
 impl StatePart {
@@ -133,19 +144,15 @@ impl StateMap for ComposedMap {
         let text = |text: &str| toml::Value::String(text.to_owned());
         let part = |part: &StatePart| {
             let mut table = match part {
-                StatePart::View { name, map, .. } => {
-                    let mut table = toml::Table::new();
-                    table.insert("view".to_owned(), text(name));
-                    table.insert("grid".to_owned(), toml::Value::Table(map.to_table()));
-                    table
+                StatePart::View { name, .. } => toml::Table::from_iter([("view".to_owned(), text(name))]),
+                StatePart::Digit { kind: DigitKind::Stages(stages), .. } => {
+                    let stages: Vec<toml::Value> = stages.iter().map(|stage| text(stage)).collect();
+                    toml::Table::from_iter([("stages".to_owned(), stages.into())])
                 }
-                StatePart::Digit { name, labels, .. } => {
-                    let mut table = toml::Table::new();
-                    table.insert("digit".to_owned(), text(name));
-                    table
-                        .insert("labels".to_owned(), labels.iter().map(|label| text(label)).collect::<Vec<_>>().into());
-                    table
-                }
+                StatePart::Digit { name, kind: DigitKind::Bins(edges), .. } => toml::Table::from_iter([
+                    ("bins".to_owned(), text(name)),
+                    ("edges".to_owned(), edges.clone().into()),
+                ]),
             };
             table.insert("values".to_owned(), toml::Value::Integer(part.values() as i64));
             toml::Value::Table(table)
@@ -171,11 +178,22 @@ mod tests {
 
     fn map() -> ComposedMap {
         let (settings, grid) = grid();
-        let labels = |labels: &[&str]| labels.iter().map(|label| (*label).to_owned()).collect();
+        let labels = |labels: &[&str]| labels.iter().map(|label| (*label).to_owned()).collect::<Vec<String>>();
+        let stages = labels(&["search", "dock", "leave"]);
         ComposedMap::new(vec![
             StatePart::View { name: "red".to_owned(), view: 0, map: GridMap::new(&settings, grid) },
-            StatePart::Digit { name: "laser.front".to_owned(), digit: 0, labels: labels(&["below 0.6", "0.6 on"]) },
-            StatePart::Digit { name: "stage".to_owned(), digit: 1, labels: labels(&["search", "dock", "leave"]) },
+            StatePart::Digit {
+                name: "laser.front".to_owned(),
+                digit: 0,
+                labels: labels(&["below 0.6", "0.6 on"]),
+                kind: DigitKind::Bins(vec![0.6]),
+            },
+            StatePart::Digit {
+                name: "stage".to_owned(),
+                digit: 1,
+                labels: stages.clone(),
+                kind: DigitKind::Stages(stages),
+            },
         ])
     }
 
@@ -196,5 +214,14 @@ mod tests {
             [(0, 3), (0, 3), (1, 2), (2, 3)]
         );
         assert_eq!(map.mirrored(47), None);
+    }
+
+    #[test]
+    fn a_table_says_how_each_digit_comes_about() {
+        let text = toml::to_string(&map().to_table()).unwrap();
+        let of = |key: &str| text.lines().find(|line| line.starts_with(key)).map(str::to_owned);
+        assert_eq!(of("view").as_deref(), Some("view = \"red\""));
+        assert_eq!(of("edges").as_deref(), Some("edges = [0.6]"));
+        assert_eq!(of("stages").as_deref(), Some("stages = [\"search\", \"dock\", \"leave\"]"));
     }
 }

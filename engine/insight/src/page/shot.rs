@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::picture::data_address;
 use engine::diagnostic::Result;
-use engine::experiment::{Ledger, Phase, Plan, Playback, Snapshot, StepReasons};
+use engine::experiment::{Ledger, Phase, Plan, Playback, SeenView, Snapshot, StepReasons};
 use filter_api::Format;
 
 /// One moment.
@@ -21,12 +21,8 @@ pub struct Shot {
     pub size_px: [usize; 2],
     /// The camera's image, then each filter's, in order.
     pub stages: Vec<StagePicture>,
-    /// Share of foreground of each cell, row by row from the top left, 0 to 1.
-    pub shares: Vec<f32>,
-    /// Whether each cell has enough foreground.
-    pub occupied: Vec<bool>,
-    /// Whether each cell counts as filled in the state.
-    pub filled: Vec<bool>,
+    /// The grid of each view.
+    pub grids: Vec<ShownGrid>,
     /// The state.
     pub state: usize,
     /// Why the step was rewarded as it was.
@@ -34,6 +30,32 @@ pub struct Shot {
     /// Every range of the laser, millimetres; only on demand.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scan_mm: Option<Vec<u32>>,
+}
+
+/// A grid with what lay in its cells.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ShownGrid {
+    /// The view's name; null if it has none.
+    pub view: Option<String>,
+    /// Rows and columns.
+    pub size: [usize; 2],
+    /// Share of foreground of each cell, row by row from the top left, 0 to 1.
+    pub shares: Vec<f32>,
+    /// Whether each cell has enough foreground.
+    pub occupied: Vec<bool>,
+    /// Whether each cell counts as filled in the grid's number.
+    pub filled: Vec<bool>,
+    /// The number of this grid alone.
+    pub number: usize,
+}
+
+impl From<SeenView> for ShownGrid {
+    fn from(seen: SeenView) -> Self {
+        let SeenView { name, grid, shares, occupied, filled, number, .. } = seen;
+        let thousandths = |share: f32| (share * 1000.0).round() / 1000.0;
+        let shares = shares.into_iter().map(thousandths).collect();
+        Self { view: name, size: [grid.0, grid.1], shares, occupied, filled, number }
+    }
 }
 
 /// One picture.
@@ -62,7 +84,7 @@ impl ShotMaker<'_> {
     /// If a picture cannot be encoded.
     pub fn shot(&self, playback: &Playback<'_>, reasons: StepReasons) -> Result<Shot> {
         let cycle = playback.cycle();
-        let Snapshot { image, grid: _, shares, occupied, filled, state, .. } = Snapshot::of(cycle);
+        let Snapshot { image, views, state } = Snapshot::of(cycle);
         let size_px = (image.width_px, image.height_px);
         let camera = data_address(&image.pixels, size_px, Format::Rgb)?;
         let mut stages = vec![StagePicture { name: "camera".to_owned(), picture: camera }];
@@ -70,16 +92,13 @@ impl ShotMaker<'_> {
             let picture = data_address(stage.pixels, size_px, stage.filter.writes)?;
             stages.push(StagePicture { name: stage.name(), picture });
         }
-        let thousandths = |share: f32| (share * 1000.0).round() / 1000.0;
         Ok(Shot {
             seed: self.seed,
             phase: name(self.phase),
             step: reasons.step,
             size_px: [size_px.0, size_px.1],
             stages,
-            shares: shares.into_iter().map(thousandths).collect(),
-            occupied,
-            filled,
+            grids: views.into_iter().map(ShownGrid::from).collect(),
             state,
             reasons,
             scan_mm: None,

@@ -199,7 +199,9 @@ impl Tape {
             format: "png".to_owned(),
         };
         self.camera.log_with_meta(&message(png(&seen.image.pixels, size, ExtendedColorType::Rgb8)?), at);
-        self.mask.log_with_meta(&message(png(&seen.mask, size, ExtendedColorType::L8)?), at);
+        if let Some(view) = seen.views.first() {
+            self.mask.log_with_meta(&message(png(&view.mask, size, ExtendedColorType::L8)?), at);
+        }
         self.images += 1;
         Ok(())
     }

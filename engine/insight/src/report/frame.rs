@@ -6,7 +6,7 @@ use super::sheet::{
     BELOW_TITLE_PX, BLUE, FRAME, LABEL_PX, MARGIN_PX, PAPER, QUIET, SKY, SMALL_PX, Sheet, TEXT, centred, spot, words,
 };
 use engine::diagnostic::Result;
-use engine::experiment::Snapshot;
+use engine::experiment::{SeenView, Snapshot};
 use engine::sensors::observation::Image;
 use filter_api::Format;
 
@@ -27,16 +27,8 @@ pub struct FrameData<'a> {
     pub height_px: usize,
     /// The pictures before the grid, left to right: at least one.
     pub panels: &'a [FramePanel<'a>],
-    /// Rows of the grid.
-    pub rows: usize,
-    /// Columns of the grid.
-    pub columns: usize,
-    /// Share of foreground in each cell, row by row from the top left, 0 to 1.
-    pub shares: &'a [f32],
-    /// Whether each cell has enough foreground.
-    pub occupied: &'a [bool],
-    /// Whether each cell counts as occupied in the state, by its foreground or by the column rule.
-    pub filled: &'a [bool],
+    /// The grids after them: at least one.
+    pub views: &'a [SeenView],
     /// The state's number.
     pub state: usize,
 }
@@ -46,18 +38,11 @@ pub struct FrameData<'a> {
 /// # Errors
 /// As [`frame()`].
 pub fn snapshot_frame(title: &str, snapshot: &Snapshot) -> Result<Picture> {
-    frame(&FrameData {
-        title,
-        width_px: snapshot.image.width_px,
-        height_px: snapshot.image.height_px,
-        panels: &[FramePanel::image("camera", &snapshot.image), FramePanel::mask(&snapshot.mask)],
-        rows: snapshot.grid.0,
-        columns: snapshot.grid.1,
-        shares: &snapshot.shares,
-        occupied: &snapshot.occupied,
-        filled: &snapshot.filled,
-        state: snapshot.state,
-    })
+    let Snapshot { image, views, state } = snapshot;
+    let masks = views.iter().map(|view| FramePanel::mask(view.name.as_deref().unwrap_or("filtered"), &view.mask));
+    let panels: Vec<FramePanel<'_>> = [FramePanel::image("camera", image)].into_iter().chain(masks).collect();
+    let (width_px, height_px) = (image.width_px, image.height_px);
+    frame(&FrameData { title, width_px, height_px, panels: &panels, views, state: *state })
 }
 
 /// One picture of the frame.
@@ -80,8 +65,8 @@ impl<'a> FramePanel<'a> {
 
     /// The mask that a chain of filters made, 0 or 255.
     #[must_use]
-    pub fn mask(pixels: &'a [u8]) -> Self {
-        Self { name: "filtered", format: Format::Mask, pixels }
+    pub fn mask(name: &'a str, pixels: &'a [u8]) -> Self {
+        Self { name, format: Format::Mask, pixels }
     }
 
     /// What is written below it.
@@ -118,7 +103,7 @@ pub fn frame(data: &FrameData<'_>) -> Result<Picture> {
     let apart = (panel_width + GAP_PX).max(LEAST_APART_PX);
     let top = BELOW_TITLE_PX + 30.0;
     let panels = data.panels.len();
-    let sheet_width = 2.0 * MARGIN_PX + (panels + 1) as f64 * apart - GAP_PX;
+    let sheet_width = 2.0 * MARGIN_PX + (panels + data.views.len()) as f64 * apart - GAP_PX;
     let mut sheet = Sheet::new(sheet_width, top + panel_height + 74.0, data.title);
     let panel = |index: usize| {
         let left = MARGIN_PX + index as f64 * apart + ((apart - GAP_PX - panel_width) / 2.0).floor();
@@ -132,21 +117,31 @@ pub fn frame(data: &FrameData<'_>) -> Result<Picture> {
         sheet.image(min, max, columns, rows, rgb);
         sheet.border(min, max, FRAME);
     }
-    let (min, max) = panel(panels);
-    title(&mut sheet, min, max, &format!("grid {} × {}: state {}", data.rows, data.columns, data.state), &digits(data));
-    grid(&mut sheet, min, max, data);
+    for (index, view) in data.views.iter().enumerate() {
+        let (min, max) = panel(panels + index);
+        let (rows, columns) = view.grid;
+        let above = match &view.name {
+            None => format!("grid {rows} × {columns}: state {}", data.state),
+            Some(name) => format!("{name}, grid {rows} × {columns}: number {}", view.number),
+        };
+        title(&mut sheet, min, max, &above, &digits(view));
+        grid(&mut sheet, min, max, view);
+    }
     let names: Vec<&str> = data.panels.iter().map(|panel| panel.name).collect();
     sheet.finish(&format!("What the robot sees: {}, and the grid in state {}", names.join(", "), data.state))
 }
 
 fn check_parts(data: &FrameData<'_>) -> Result<()> {
     let (width, height) = (data.width_px, data.height_px);
-    let cells = data.rows * data.columns;
     let fits = |panel: &FramePanel<'_>| panel.pixels.len() == width * height * panel.format.channels();
     if width * height == 0 || data.panels.is_empty() || !data.panels.iter().all(fits) {
         return Err(failed("a panel does not have the size of the frame"));
     }
-    if cells == 0 || [data.shares.len(), data.occupied.len(), data.filled.len()] != [cells; 3] {
+    let whole = |view: &SeenView| {
+        let cells = view.grid.0 * view.grid.1;
+        cells > 0 && [view.shares.len(), view.occupied.len(), view.filled.len()] == [cells; 3]
+    };
+    if data.views.is_empty() || !data.views.iter().all(whole) {
         return Err(failed("the grid does not have rows times columns cells"));
     }
     Ok(())
@@ -164,24 +159,26 @@ fn title(sheet: &mut Sheet, min: Spot, max: Spot, name: &str, below: &str) {
 }
 
 /// What the state counts under the column rule.
-fn digits(data: &FrameData<'_>) -> String {
-    let filled = |column: usize| (0..data.rows).filter(|row| data.filled[row * data.columns + column]).count();
-    let counts: Vec<String> = (0..data.columns).map(|column| filled(column).to_string()).collect();
+fn digits(view: &SeenView) -> String {
+    let (rows, columns) = view.grid;
+    let filled = |column: usize| (0..rows).filter(|row| view.filled[row * columns + column]).count();
+    let counts: Vec<String> = (0..columns).map(|column| filled(column).to_string()).collect();
     format!("filled cells in each column: {}", counts.join(" "))
 }
 
-fn grid(sheet: &mut Sheet, min: Spot, max: Spot, data: &FrameData<'_>) {
+fn grid(sheet: &mut Sheet, min: Spot, max: Spot, view: &SeenView) {
+    let (rows, columns) = view.grid;
     let along = |index: usize, count: usize, low: i32, high: i32| low + (high - low) * index as i32 / count as i32;
-    let x = |column: usize| along(column, data.columns, min.0, max.0);
-    let y = |row: usize| along(row, data.rows, min.1, max.1);
+    let x = |column: usize| along(column, columns, min.0, max.0);
+    let y = |row: usize| along(row, rows, min.1, max.1);
     let small = (x(1) - x(0)).min(2 * (y(1) - y(0))) < units(52.0);
-    for row in 0..data.rows {
-        for column in 0..data.columns {
-            let cell = row * data.columns + column;
+    for row in 0..rows {
+        for column in 0..columns {
+            let cell = row * columns + column;
             let (from, to) = ((x(column), y(row)), (x(column + 1), y(row + 1)));
-            let ink = cell_fill(sheet, from, to, data.occupied[cell], data.filled[cell]);
+            let ink = cell_fill(sheet, from, to, view.occupied[cell], view.filled[cell]);
             if !small {
-                let share = format!("{:.1} %", data.shares[cell] * 100.0);
+                let share = format!("{:.1} %", view.shares[cell] * 100.0);
                 let middle = ((from.0 + to.0) / 2, (from.1 + to.1) / 2);
                 sheet.text(centred(words(&share, middle, LABEL_PX, ink)));
             }

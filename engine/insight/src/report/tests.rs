@@ -5,6 +5,7 @@ use image::GenericImageView;
 
 use super::*;
 use engine::diagnostic::SourceText;
+use engine::experiment::SeenView;
 use engine::experiment::Trail;
 use engine::geometry::{Point3, Twist, Vector3};
 use engine::random::Random;
@@ -212,12 +213,16 @@ fn shown(image: &Image, filtered: &[u8], flags: &[bool; 9]) -> engine::diagnosti
         title: "step",
         width_px: image.width_px,
         height_px: image.height_px,
-        panels: &[FramePanel::image("camera", image), FramePanel::mask(filtered)],
-        rows: 3,
-        columns: 3,
-        shares: &[0.0, 0.5, 1.0, 0.0, 0.25, 0.0, 0.0, 0.0, 0.125],
-        occupied: flags,
-        filled: flags,
+        panels: &[FramePanel::image("camera", image), FramePanel::mask("filtered", filtered)],
+        views: &[SeenView {
+            name: None,
+            mask: Vec::new(),
+            grid: (3, 3),
+            shares: vec![0.0, 0.5, 1.0, 0.0, 0.25, 0.0, 0.0, 0.0, 0.125],
+            occupied: flags.to_vec(),
+            filled: flags.to_vec(),
+            number: 21,
+        }],
         state: 21,
     })
 }
@@ -242,11 +247,12 @@ fn a_frame_shows_its_pixels_enlarged_and_its_state() {
 #[test]
 fn a_frame_shows_every_stage_between_the_image_and_the_grid() {
     let (grey, image) = (vec![100; 4800], Image::new(80, 60));
-    let (width_px, height_px, flags) = (80, 60, &[false]);
+    let (width_px, height_px, flags) = (80, 60, vec![false]);
     let blurred = FramePanel { name: "blur", format: Format::Grey, pixels: &grey };
-    let panels = &[FramePanel::image("photograph", &image), blurred, FramePanel::mask(&grey)];
-    let (rows, columns, shares, occupied, filled) = (1, 1, &[0.0], flags, flags);
-    let data = FrameData { title: "", width_px, height_px, panels, rows, columns, shares, occupied, filled, state: 0 };
+    let panels = &[FramePanel::image("photograph", &image), blurred, FramePanel::mask("filtered", &grey)];
+    let (name, mask, shares, occupied, filled) = (None, Vec::new(), vec![0.0], flags.clone(), flags);
+    let views = &[SeenView { name, mask, grid: (1, 1), shares, occupied, filled, number: 0 }];
+    let data = FrameData { title: "", width_px, height_px, panels, views, state: 0 };
     let picture = frame(&data).unwrap();
     assert!(picture.svg.contains("blur") && picture.svg.contains("grey levels"));
     // Four panels of 400 pixels, 428 apart; the second begins at 456.

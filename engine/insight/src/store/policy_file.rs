@@ -11,7 +11,7 @@ use engine::experiment::Plan;
 use engine::filter::Catalogue;
 use engine::geometry::Twist;
 use engine::learner::{Policy, PolicyRow};
-use engine::settings::{FilterSettings, GridSettings, Settings};
+use engine::settings::{FilterSettings, GridSettings, Settings, ViewSettings};
 use engine::state::{GridMap, MAX_STATES, StateMap};
 
 /// The name of the file in a run's folder.
@@ -79,6 +79,8 @@ pub struct StoredPolicy {
     pub actions: Vec<Twist>,
     /// The parts of its states; none if the grid alone is the state.
     pub parts: Vec<toml::Table>,
+    /// The views that the parts are of; none if the grid alone is the state.
+    pub views: Vec<ViewSettings>,
     /// What it learned.
     pub policy: Policy,
     /// SHA-256 of the `run.toml` of the run that learned it, if it names one.
@@ -179,6 +181,7 @@ impl StoredPolicy {
             entries,
             grid,
             parts: file.part,
+            views: file.view.iter().map(ViewEntry::settings).collect(),
             policy: Policy::new(file.actions.len(), rows),
             actions: file.actions.iter().map(|[linear, angular]| Twist::new(*linear, *angular)).collect(),
         })
@@ -201,6 +204,14 @@ impl StoredPolicy {
         let (own_parts, parts) = (&self.parts, &parts_of(map));
         if own_parts != parts {
             return Err([own_parts, parts].map(|parts| in_words(parts)));
+        }
+        let looks =
+            |view: &ViewSettings| format!("view \"{}\" of {}", view.name, shape(view.grid.rows, view.grid.columns));
+        let differs = |(own, view): (&ViewSettings, &ViewSettings)| {
+            (own.name != view.name || own.grid != view.grid).then(|| [looks(own), looks(view)])
+        };
+        if let Some(differing) = self.views.iter().zip(settings.views()).find_map(differs) {
+            return Err(differing);
         }
         if self.policy.rows().len() != states {
             return Err([format!("{} states", self.policy.rows().len()), format!("{states} states")]);
@@ -225,14 +236,14 @@ fn parts_of(map: &dyn StateMap) -> Vec<toml::Table> {
     parts.iter().filter_map(toml::Value::as_table).cloned().collect()
 }
 
-/// `states of a grid`, `states of camera, stage ("search", "approach")`.
+/// `states of a grid alone`, `states of camera, laser.front [0.5, 1.0], stages ["search", "approach"]`.
 fn in_words(parts: &[toml::Table]) -> String {
     let name = |part: &toml::Table| {
-        let text = |key: &str| part.get(key).and_then(toml::Value::as_str);
-        let labels = part.get("labels").and_then(toml::Value::as_array);
-        let labels = labels.map(|labels| labels.iter().filter_map(toml::Value::as_str).collect::<Vec<_>>().join(", "));
-        let name = text("view").or_else(|| text("digit")).unwrap_or("?");
-        labels.map_or_else(|| name.to_owned(), |labels| format!("{name} ({labels})"))
+        let text = |key: &str| part.get(key).map(toml::Value::to_string);
+        let view = text("view").map(|view| view.trim_matches('"').to_owned());
+        let bins = || Some(format!("{} {}", text("bins")?.trim_matches('"'), text("edges")?));
+        let stages = || Some(format!("stages {}", text("stages")?));
+        view.or_else(bins).or_else(stages).unwrap_or_else(|| "?".to_owned())
     };
     match parts {
         [] => "states of a grid alone".to_owned(),

@@ -4,7 +4,7 @@ use std::io::IsTerminal;
 use std::path::Path;
 
 use engine::diagnostic::{Diagnostic, Result, all_codes, code_page, excerpt, nearest_name, printable};
-use engine::experiment::{Phase, Plan, Playback, RuleReasons, Snapshot, StepReasons, ViewStage};
+use engine::experiment::{Phase, Plan, Playback, RuleReasons, SeenView, StepReasons, ViewStage};
 use engine::robot::Robot;
 use insight::folder::create_folder;
 use insight::report::{FrameData, FramePanel, Picture, frame};
@@ -104,20 +104,13 @@ fn draw_step(plan: &Plan, playback: &Playback<'_>, title: &str) -> Result<Pictur
         format: stage.filter.writes,
         pixels: stage.pixels,
     }));
-    let grid = cycle.grid();
-    let shares: Vec<f32> =
-        grid.counts().iter().enumerate().map(|(cell, count)| *count as f32 / grid.area_px(cell) as f32).collect();
-    let ((rows, columns), filled) = (grid.size(), Snapshot::filled(cycle));
+    let views: Vec<SeenView> = cycle.views().collect();
     frame(&FrameData {
         title: &format!("{}, {title}", plan.behaviour.name()),
         width_px: image.width_px,
         height_px: image.height_px,
         panels: &panels,
-        rows,
-        columns,
-        shares: &shares,
-        occupied: grid.occupied(),
-        filled: &filled,
+        views: &views,
         state: cycle.state(),
     })
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use engine::diagnostic::{Diagnostic, Result, printable};
-use engine::experiment::{Decider, Overrides, Sight};
+use engine::experiment::{Decider, Overrides, SeenView, Sight};
 use engine::filter::{Catalogue, Chain};
 use engine::learner::Policy;
 use engine::sensors::observation::Image;
@@ -223,18 +223,14 @@ fn draw_photograph(file: &Path, image: &Image, chain: &Chain, grid: &Grid, state
         format: filter.writes,
         pixels,
     }));
-    let ((rows, columns), shares) = (grid.size(), shares(grid));
+    let views = [SeenView::of(None, chain.mask(), grid)];
     let title = printable(&file.file_name().unwrap_or_default().to_string_lossy());
     frame(&FrameData {
         title: &title,
         width_px: image.width_px,
         height_px: image.height_px,
         panels: &panels,
-        rows,
-        columns,
-        shares: &shares,
-        occupied: grid.occupied(),
-        filled: &grid.cells(state),
+        views: &views,
         state,
     })
 }

@@ -25,35 +25,41 @@ class Frames {
     const names = shot.stages.map((stage) => stage.name).join();
     if (!this.parts || this.parts.names !== names) this.build(doc, shot, names);
     shot.stages.forEach((stage, index) => { this.parts.images[index].src = stage.picture; });
-    shot.shares.forEach((share, cell) => {
-      const box = this.parts.cells[cell];
-      box.textContent = doc.grid[1] <= 3 ? `${(100 * share).toFixed(1)} %` : doc.grid[1] <= 6 ? (100 * share).toFixed(0) : '';
-      box.className = shot.occupied[cell] ? 'occupied' : shot.filled[cell] ? 'filled' : '';
+    shot.grids.forEach((grid, index) => this.fill(shot, grid, this.parts.grids[index]));
+  }
+
+  fill(shot, grid, { box, cells, number }) {
+    const columns = grid.size[1];
+    grid.shares.forEach((share, cell) => {
+      cells[cell].textContent = columns <= 3 ? `${(100 * share).toFixed(1)} %` : columns <= 6 ? (100 * share).toFixed(0) : '';
+      cells[cell].className = grid.occupied[cell] ? 'occupied' : grid.filled[cell] ? 'filled' : '';
     });
-    const filled = shot.filled.filter(Boolean).length;
-    this.parts.grid.setAttribute('aria-label', `grid in state ${shot.state}: ${filled} of ${shot.filled.length} cells filled`);
-    this.parts.state.textContent = `state ${shot.state}`;
+    const filled = grid.filled.filter(Boolean).length;
+    const named = grid.view === null ? `state ${shot.state}` : `number ${grid.number}`;
+    box.setAttribute('aria-label', `grid${grid.view === null ? '' : ` of ${grid.view}`} in ${named}: ${filled} of ${grid.filled.length} cells filled`);
+    number.textContent = named;
   }
 
   build(doc, shot, names) {
-    const [rows, columns] = doc.grid;
     const ratio = `${shot.size_px[0]} / ${shot.size_px[1]}`;
     const images = shot.stages.map((stage) => {
       const image = el('img', { alt: stage.name });
       image.style.aspectRatio = ratio;
       return image;
     });
-    const cells = shot.shares.map(() => el('span'));
-    const grid = el('div', { class: 'cells', role: 'img', 'aria-label': 'grid' }, ...cells);
-    grid.style.gridTemplateColumns = `repeat(${columns}, 1fr)`;
-    grid.style.aspectRatio = ratio;
-    const state = el('b');
+    const grids = shot.grids.map((grid) => {
+      const cells = grid.shares.map(() => el('span'));
+      const box = el('div', { class: 'cells', role: 'img', 'aria-label': 'grid' }, ...cells);
+      box.style.gridTemplateColumns = `repeat(${grid.size[1]}, 1fr)`;
+      box.style.aspectRatio = ratio;
+      return { box, cells, number: el('b'), caption: `${grid.view ?? 'grid'} ${grid.size[0]} × ${grid.size[1]}, ` };
+    });
     const captions = shot.stages.map((stage, index) =>
       index === 0 ? `camera, ${shot.size_px[0]} × ${shot.size_px[1]} px` : `filter ${stage.name}`);
-    this.parts = { names, images, cells, grid, state };
+    this.parts = { names, images, grids };
     this.box.replaceChildren(
       ...images.map((image, index) => el('figure', {}, image, el('figcaption', { text: captions[index] }))),
-      el('figure', {}, grid, el('figcaption', {}, `grid ${rows} × ${columns}, `, state)),
+      ...grids.map(({ box, number, caption }) => el('figure', {}, box, el('figcaption', {}, caption, number))),
     );
   }
 }
