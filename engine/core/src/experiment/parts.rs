@@ -26,7 +26,7 @@ impl Parts<'_> {
         let camera = !unread.has("camera", "width_px") && !unread.has("camera", "height_px");
         let chain = camera && !unread.any_of("filter") && mistakes.take(self.tried_chain()).is_some();
         let grid = camera && !unread.any_of("grid") && mistakes.take(self.grid()).is_some();
-        if !unread.has("laser", "beams") {
+        if !unread.has("laser", "beams") && !unread.has("laser", "field_of_view_deg") {
             mistakes.take(self.judge());
         }
         if grid && !unread.any_of("actions") && !unread.any_of("learner") {
@@ -112,7 +112,7 @@ impl Parts<'_> {
 
     /// A fresh judge.
     pub(super) fn judge(&self) -> Result<Judge> {
-        self.behaviour.judge(self.settings.run.period_s, self.settings.laser.beams as usize)
+        self.behaviour.judge(self.settings.run.period_s, self.settings.laser.fan())
     }
 
     fn point(&self, error: Diagnostic, place: &str, label: &str, help: Option<String>) -> Box<Diagnostic> {

@@ -19,6 +19,8 @@ pub(crate) struct Needs {
     pub slot_uses: Vec<SlotUse>,
     /// Beams that are named.
     pub beams: Vec<(i64, Position)>,
+    /// Bearings of the laser that are named, degrees.
+    pub bearings: Vec<(f64, Position)>,
     /// Stages that are named.
     pub stages: Vec<(String, Position)>,
     /// Grid cells that are named: row, column.

@@ -8,7 +8,7 @@ use crate::judge::memory::Remembered;
 use crate::judge::rule::CompiledRule;
 use crate::judge::{Judge, RuleText, reach};
 use crate::outcome::Then;
-use crate::settings::{LaserSettings, Settings};
+use crate::settings::{LaserSettings, ScanFan, Settings};
 use crate::verdict::{Endable, Probe, Success, SuccessCondition};
 use std::ops::Range;
 use std::sync::Arc;
@@ -165,15 +165,15 @@ impl Behaviour {
     /// A judge with fresh counters, for one seed; `period_s` is the time between two steps, in seconds.
     ///
     /// # Errors
-    /// If a rule names a beam that a laser with `beams` beams does not have.
-    pub(crate) fn judge(&self, period_s: f64, beams: usize) -> Result<Judge> {
-        self.compiled.check_beams(beams)?;
-        Ok(self.unchecked_judge(period_s, beams))
+    /// If a rule names a beam or a bearing that such a laser does not have.
+    pub(crate) fn judge(&self, period_s: f64, fan: ScanFan) -> Result<Judge> {
+        self.compiled.check_beams(fan)?;
+        Ok(self.unchecked_judge(period_s, fan))
     }
 
     /// A judge for rules that may name beams that the laser does not have: these must not be judged.
-    pub(super) fn unchecked_judge(&self, period_s: f64, beams: usize) -> Judge {
-        Judge::new(Arc::clone(&self.compiled), period_s, beams)
+    pub(super) fn unchecked_judge(&self, period_s: f64, fan: ScanFan) -> Judge {
+        Judge::new(Arc::clone(&self.compiled), period_s, fan)
     }
 
     pub(super) fn compiled(&self) -> &CompiledScript {

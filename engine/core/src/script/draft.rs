@@ -196,9 +196,9 @@ fn check_with_settings(
     mistakes: &mut Mistakes,
 ) -> std::result::Result<(), Diagnostic> {
     let (Settings { run, laser, grid, .. }, compiled) = (behaviour.settings(), behaviour.compiled());
-    let beams = laser.beams as usize;
-    if !unread.has("laser", "beams") {
-        mistakes.take(compiled.check_beams(beams));
+    let (fan, seen) = (laser.fan(), !unread.has("laser", "beams") && !unread.has("laser", "field_of_view_deg"));
+    if seen {
+        mistakes.take(compiled.check_beams(fan));
     }
     if !unread.has("grid", "rows") && !unread.has("grid", "columns") {
         mistakes.take(compiled.check_cells((grid.rows as usize, grid.columns as usize)));
@@ -207,11 +207,11 @@ fn check_with_settings(
         behaviour.find_unreachable(laser, f64::INFINITY, mistakes);
     }
     // Rules that name beams of another laser cannot be tried.
-    if unread.has("laser", "beams") && compiled.check_beams(beams).is_err() {
+    if !seen && compiled.check_beams(fan).is_err() {
         return Ok(());
     }
     spoilt.spread(mistakes);
-    let judge = behaviour.unchecked_judge(run.period_s, beams);
+    let judge = behaviour.unchecked_judge(run.period_s, fan);
     rehearsal::rehearse(judge, behaviour.settings(), spoilt, mistakes).map_err(|last| *last)
 }
 

@@ -34,6 +34,9 @@ impl Names<'_> {
                     self.sector(next);
                 }
             }
+            [Link::Property(key @ ("left" | "right"), position), ..] if group == "laser" => {
+                self.needs.bearings.push((if *key == "left" { 90.0 } else { -90.0 }, *position));
+            }
             [Link::Property(key, position), ..] if value(group, key).is_none() => self.no_fact(group, key, *position),
             _ => {}
         }
@@ -82,6 +85,7 @@ impl Names<'_> {
                 self.mistake("E-SCRIPT-FACT", position, message, "here", format!("write {form}"));
             }
             Some(_) if matches!(name, "sector" | "hit") => call.args.iter().for_each(|beam| self.beam(beam)),
+            Some(_) if matches!(name, "at" | "hit_at" | "between") => call.args.iter().for_each(|of| self.bearing(of)),
             Some(_) if name == "cell" => {
                 if let [Expr::IntegerConstant(row, at), Expr::IntegerConstant(column, _)] = call.args.as_slice() {
                     self.needs.cells.push((*row, *column, *at));
@@ -97,6 +101,15 @@ impl Names<'_> {
             return self.mistake("E-SCRIPT-STAGE", position, message, "here", "write stage.at(\"name\")");
         };
         self.needs.stages.push((name.to_string(), *at));
+    }
+
+    fn bearing(&mut self, bearing: &Expr) {
+        let (bearing_deg, position) = match bearing {
+            Expr::IntegerConstant(number, position) => (*number as f64, *position),
+            Expr::FloatConstant(number, position) => (**number, *position),
+            _ => return,
+        };
+        self.needs.bearings.push((bearing_deg, position));
     }
 
     fn beam(&mut self, beam: &Expr) {

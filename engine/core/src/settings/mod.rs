@@ -4,11 +4,13 @@
 //! `--set`, `run.toml`, range checks and the reference page all read it.
 
 mod body;
+mod fan;
 mod table;
 mod words;
 
 use crate::geometry::Twist;
 pub use body::{BodyShape, Footprint};
+pub use fan::ScanFan;
 pub use table::{SETTINGS, Setting, SettingError, SettingShape, Value, apply};
 pub use words::{CombineWay, LearnerKind, Lens, RecoverTo};
 
@@ -103,12 +105,21 @@ pub struct CameraSettings {
 #[allow(missing_docs, reason = "every field is documented in the table of settings")]
 pub struct LaserSettings {
     pub beams: u64,
+    pub field_of_view_deg: f64,
     pub forward_m: f64,
     pub height_m: f64,
     pub tilt_deg: f64,
     pub min_range_m: f64,
     pub max_range_m: f64,
     pub noise_m: f64,
+}
+
+impl LaserSettings {
+    /// Where its beams look.
+    #[must_use]
+    pub fn fan(&self) -> ScanFan {
+        ScanFan { beams: self.beams as usize, view_deg: self.field_of_view_deg }
+    }
 }
 
 /// How a filtered image becomes a state.
@@ -212,6 +223,7 @@ impl Default for Settings {
             // Range limits of the SICK LMS 200 in Gazebo 0.7, the simulator of the paper's time.
             laser: LaserSettings {
                 beams: 181,
+                field_of_view_deg: 180.0,
                 forward_m: 0.18,
                 height_m: 0.38,
                 tilt_deg: 0.0,

@@ -148,8 +148,8 @@ impl Document {
         let Settings { run, robot, actions, laser, .. } = &plan.settings;
         let world = Ground::new(plan);
         let far = world.bounds_m.iter().fold(1.0, |far: f64, at| far.max(at.abs()));
-        let beams = laser.beams as usize;
-        let every = beams.saturating_sub(1).div_ceil(MOST_SCAN_BEAMS - 1).max(1);
+        let fan = laser.fan();
+        let every = fan.beams.saturating_sub(1).div_ceil(MOST_SCAN_BEAMS - 1).max(1);
         let (rows, columns) = plan.grid()?.size();
         let rules = plan.behaviour.rules().iter().enumerate();
         Ok(Self {
@@ -169,9 +169,12 @@ impl Document {
             actions: actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
             grid: [rows, columns],
             scan: ScanShape {
-                beams,
+                beams: fan.beams,
+                first_rad: fan.bearing_rad(0),
+                apart_rad: fan.apart_rad(),
+                whole: fan.is_whole(),
                 every,
-                kept: beams.saturating_sub(1) / every + 1,
+                kept: fan.beams.saturating_sub(1) / every + 1,
                 max_range_m: laser.max_range_m,
                 forward_m: laser.forward_m,
                 tilt_rad: laser.tilt_deg.to_radians(),
