@@ -35,6 +35,7 @@ pub struct Behaviour {
     compiled: Arc<CompiledScript>,
     success: Vec<SuccessCondition>,
     endable: Endable,
+    body: Option<SourceText>,
 }
 
 impl Behaviour {
@@ -55,11 +56,31 @@ impl Behaviour {
         let stages = !compiled.stages.is_empty();
         let endable = Endable { stages, ..endable(&compiled.rules, outline.reward_recovers) };
         let compiled = Arc::new(compiled);
-        Self { name: name.to_owned(), settings, places, rules, outline, compiled, success: Vec::new(), endable }
+        Self {
+            name: name.to_owned(),
+            settings,
+            places,
+            rules,
+            outline,
+            compiled,
+            success: Vec::new(),
+            endable,
+            body: None,
+        }
     }
 
     pub(super) fn with_success(self, success: Vec<SuccessCondition>) -> Self {
         Self { success, ..self }
+    }
+
+    pub(super) fn with_body(self, body: Option<SourceText>) -> Self {
+        Self { body, ..self }
+    }
+
+    /// The file of the body that it names, if it names one.
+    #[must_use]
+    pub fn body(&self) -> Option<&SourceText> {
+        self.body.as_ref()
     }
 
     /// What is called success in a world with a lap route or without one, in a test that takes so many seconds.

@@ -3,6 +3,7 @@
 use super::behaviour::Behaviour;
 use super::bodies::outline_of;
 use super::compile::{Compiler, Vocabulary};
+use super::named_body::{BodyFiles, beside};
 use super::outline::ScriptOutline;
 use super::rules::{rules, stage};
 use super::setup::{self, Log, SetUp};
@@ -41,17 +42,17 @@ impl Draft {
     /// If nothing can be understood after a mistake: the file cannot be read as a script, or a limit stopped it.
     pub(crate) fn load(path: &Path) -> Result<Self> {
         let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-        Self::read(&name, source::read(path)?)
+        Self::read(&name, source::read(path)?, &beside(path))
     }
 
     /// Looks for mistakes in a script's text; `name` is the behaviour's.
     ///
     /// # Errors
     /// As [`Draft::load`].
-    fn read(name: &str, source: SourceText) -> Result<Self> {
+    fn read(name: &str, source: SourceText, files: &BodyFiles<'_>) -> Result<Self> {
         let code = source::check_text(source)?;
         let mut mistakes = Mistakes::new(&code.source);
-        match Self::understood(name, &code, &mut mistakes) {
+        match Self::understood(name, &code, files, &mut mistakes) {
             Ok((behaviour, unread)) => Ok(Self { behaviour, mistakes, unread }),
             Err(last) => Err(mistakes.ended_by(last)),
         }
@@ -68,6 +69,7 @@ impl Draft {
     fn understood(
         name: &str,
         code: &Code,
+        files: &BodyFiles<'_>,
         mistakes: &mut Mistakes,
     ) -> std::result::Result<(Behaviour, Unread), Diagnostic> {
         let mut engine = sandbox::engine();
@@ -90,12 +92,12 @@ impl Draft {
         let constants = top_level::run(&engine, code, &tree, &log, &mut spoilt, mistakes)?;
         spoilt.spread(mistakes);
         let calls = spoilt.setup_calls(mistakes);
-        let SetUp { settings, places, mut unread } = setup::finish(&log, code, &tree.ast, mistakes);
+        let SetUp { settings, places, mut unread, body } = setup::finish(&log, code, &tree.ast, files, mistakes);
         calls.into_iter().for_each(|call| unread.all_of(call));
         engine.register_global_module(constants_module(&constants).into());
         let read = ReadScript { code, tree, engine, constants, settings: &settings, needs };
         let (compiled, outline, success) = read.compile(&spoilt, mistakes)?;
-        let behaviour = Behaviour::new(name, settings, places, outline, compiled).with_success(success);
+        let behaviour = Behaviour::new(name, settings, places, outline, compiled).with_success(success).with_body(body);
         check_with_settings(&behaviour, &mut spoilt, &unread, mistakes)?;
         Ok((behaviour, unread))
     }
@@ -179,12 +181,20 @@ impl Behaviour {
         Draft::load(path)?.end()
     }
 
-    /// Loads a script from its text; `name` is the behaviour's.
+    /// Loads a script from its text; `name` is the behaviour's. Of bodies it knows those that ship.
     ///
     /// # Errors
     /// If anything in it is wrong.
     pub fn parse(name: &str, source: SourceText) -> Result<Self> {
-        Draft::read(name, source)?.end()
+        Self::parse_with(name, source, &|_| Ok(None))
+    }
+
+    /// Loads a script from its text, with `bodies` before those that ship.
+    ///
+    /// # Errors
+    /// If anything in it, or in the file of its body, is wrong.
+    pub fn parse_with(name: &str, source: SourceText, bodies: &BodyFiles<'_>) -> Result<Self> {
+        Draft::read(name, source, bodies)?.end()
     }
 }
 

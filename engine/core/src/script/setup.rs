@@ -1,10 +1,10 @@
 //! The set-up calls at the top of a script: written down while it runs, then turned into settings.
 
+use super::named_body::{BodyFiles, NamedBody};
 use super::setup_table::SETUP;
 use super::source::Code;
 use super::unread::Unread;
-use crate::diagnostic::{Diagnostic, Mistakes, Result, printable};
-use crate::geometry::Twist;
+use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, printable};
 use crate::judge::explain;
 use crate::judge::views::number;
 use crate::settings::{self, FilterSettings, PolicySettings, Settings, Value};
@@ -16,14 +16,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Most set-up calls in one script.
 const MAX_CALLS: usize = 256;
-/// Most actions.
-const MAX_ACTIONS: usize = 64;
 /// Most stages.
 const MAX_STAGES: usize = 16;
-/// Fastest forward motion of an action, m/s.
-const MAX_LINEAR: f64 = 2.0;
-/// Fastest turn of an action, rad/s.
-const MAX_ANGULAR: f64 = 6.0;
 
 #[derive(Debug)]
 struct Call {
@@ -103,36 +97,54 @@ pub(super) struct SetUp {
     pub settings: Settings,
     pub places: SettingPlaces,
     pub unread: Unread,
+    /// The file of the body that is named.
+    pub body: Option<SourceText>,
 }
 
-/// Ends the set-up: the settings that the calls make, over the defaults. Every call that is wrong is added to `mistakes`,
+/// Ends the set-up: the settings that the calls make, over the defaults of the body that
+/// it names in `files`, or of the engine. Every call that is wrong is added to `mistakes`,
 /// with its place: an unknown key, a value out of range, a setting made twice.
-pub(super) fn finish(log: &Log, code: &Code, ast: &AST, mistakes: &mut Mistakes) -> SetUp {
+pub(super) fn finish(log: &Log, code: &Code, ast: &AST, files: &BodyFiles<'_>, mistakes: &mut Mistakes) -> SetUp {
     let (settings, places, unread) = (Settings::default(), SettingPlaces::new(), Unread::default());
-    let mut setup =
-        SetupReader { code, ast, settings, places, unread, mistakes, call: Position::NONE, entries: OnceCell::new() };
-    for call in log.close() {
+    let (call, entries) = (Position::NONE, OnceCell::new());
+    let mut setup = SetupReader { code, ast, settings, places, unread, mistakes, call, entries, body: None };
+    let calls = log.close();
+    for call in calls.iter().filter(|call| call.name == "robot") {
+        setup.call = call.position;
+        let named = call.arguments.first().filter(|name| name.is_string() && call.arguments.len() < 3);
+        let form = SETUP.iter().find(|row| row.name == "robot").map_or("", |row| row.form);
+        if let Some(Err(wrong)) = named.map(|name| setup.body(name.clone(), form, files)) {
+            setup.mistakes.add(*wrong);
+            ["robot", "camera", "laser", "actions"].iter().for_each(|group| setup.unread.all_of(group));
+        }
+    }
+    for call in calls {
         setup.call = call.position;
         if let Err(wrong) = setup.apply(call.name, call.arguments) {
             setup.mistakes.add(*wrong);
             setup.unread.all_of(call.name);
         }
     }
-    SetUp { settings: setup.settings, places: setup.places, unread: setup.unread }
+    if !setup.unread.any_of("robot") && !setup.unread.any_of("actions") {
+        setup.check_actions();
+    }
+    let body = setup.body.map(|body| body.source);
+    SetUp { settings: setup.settings, places: setup.places, unread: setup.unread, body }
 }
 
 /// Where keys and their values stand, by call and key.
 type Entries = BTreeMap<(Position, String), (Position, Position)>;
 
-struct SetupReader<'a> {
-    code: &'a Code,
+pub(super) struct SetupReader<'a> {
+    pub(super) code: &'a Code,
     ast: &'a AST,
-    settings: Settings,
-    places: SettingPlaces,
-    unread: Unread,
-    mistakes: &'a mut Mistakes,
-    call: Position,
+    pub(super) settings: Settings,
+    pub(super) places: SettingPlaces,
+    pub(super) unread: Unread,
+    pub(super) mistakes: &'a mut Mistakes,
+    pub(super) call: Position,
     entries: OnceCell<Entries>,
+    pub(super) body: Option<NamedBody>,
 }
 
 impl SetupReader<'_> {
@@ -146,10 +158,7 @@ impl SetupReader<'_> {
                 self.mark("world".to_owned(), self.call)
             }
             ("filter", Some(filter), parameters, None) if filter.is_string() => self.filter(filter, parameters, form),
-            ("actions", Some(actions), None, None) if actions.is_array() => {
-                self.settings.actions = self.actions(actions)?;
-                self.mark("actions".to_owned(), self.call)
-            }
+            ("actions", Some(actions), None, None) if actions.is_array() => self.actions(actions),
             ("stages", Some(stages), None, None) if stages.is_array() => {
                 self.settings.stages = self.stages(stages)?;
                 self.mark("stages".to_owned(), self.call)
@@ -159,6 +168,10 @@ impl SetupReader<'_> {
                 let place = format!("policy:{}", self.settings.policies.len());
                 self.settings.policies.push(policy);
                 self.mark(place, self.call)
+            }
+            // The body itself is read before any setting.
+            ("robot", Some(name), map, None) if name.is_string() => {
+                map.map_or(Ok(()), |map| self.group("robot", map, form))
             }
             ("learner" | "recovery" | "combine", Some(kind), map, None) if kind.is_string() => {
                 let key = match name {
@@ -179,12 +192,12 @@ impl SetupReader<'_> {
         }
     }
 
-    fn wrong<T>(&self, position: Position, message: String, label: &str, form: &str) -> Result<T> {
+    pub(super) fn wrong<T>(&self, position: Position, message: String, label: &str, form: &str) -> Result<T> {
         let diagnostic = explain::mistake(&self.code.source, "E-SCRIPT-SETTING", position, message, label);
         diagnostic.help(format!("write {form}")).fail()
     }
 
-    fn word(&self, value: Dynamic, form: &str) -> Result<String> {
+    pub(super) fn word(&self, value: Dynamic, form: &str) -> Result<String> {
         let word = value.into_string().unwrap_or_default();
         if word.trim().is_empty() {
             return self.wrong(self.call, "the name is empty".to_owned(), "no name", form);
@@ -192,7 +205,7 @@ impl SetupReader<'_> {
         Ok(word)
     }
 
-    fn mark(&mut self, setting: String, position: Position) -> Result<()> {
+    pub(super) fn mark(&mut self, setting: String, position: Position) -> Result<()> {
         let source = &self.code.source;
         let span = source.word_at(explain::offset(source, position));
         if let Some(before) = self.places.get(&setting) {
@@ -287,31 +300,6 @@ impl SetupReader<'_> {
         }
         self.settings.filters.push(filter);
         Ok(())
-    }
-
-    fn actions(&self, actions: Dynamic) -> Result<Vec<Twist>> {
-        let form = "actions([[0.4, 0.2], [0.4, 0.0]]); with forward speed in m/s and turning speed in rad/s";
-        let list = actions.into_array().unwrap_or_default();
-        if list.is_empty() || list.len() > MAX_ACTIONS {
-            let message = format!("there must be 1 to {MAX_ACTIONS} actions, found {}", list.len());
-            return self.wrong(self.call, message, "set here", form);
-        }
-        let mut twists = Vec::new();
-        for (index, action) in list.into_iter().enumerate() {
-            let pair = action.into_array().unwrap_or_default();
-            let [Some(linear), Some(angular)] = pair.iter().map(number).collect::<Vec<_>>()[..] else {
-                return self.wrong(self.call, format!("action {index} is not a pair of numbers"), "set here", form);
-            };
-            let within = |value: f64, most: f64| (-most..=most).contains(&value);
-            if !within(linear, MAX_LINEAR) || !within(angular, MAX_ANGULAR) {
-                let message = format!(
-                    "action {index} is [{linear}, {angular}]: at most {MAX_LINEAR} m/s and {MAX_ANGULAR} rad/s, either way"
-                );
-                return self.wrong(self.call, message, "set here", form);
-            }
-            twists.push(Twist::new(linear, angular));
-        }
-        Ok(twists)
     }
 
     fn stages(&self, stages: Dynamic) -> Result<Vec<String>> {

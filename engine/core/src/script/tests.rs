@@ -5,6 +5,7 @@ mod memory;
 mod mistakes;
 mod pages;
 mod remembered;
+mod robots;
 mod running;
 mod same;
 mod success;

@@ -4,13 +4,20 @@
 //! `--set`, `run.toml`, range checks and the reference page all read it.
 
 mod body;
+mod body_file;
+mod body_keys;
+mod drive;
 mod fan;
+mod shipped_bodies;
 mod table;
 mod words;
 
 use crate::geometry::Twist;
 pub use body::{BodyShape, Footprint};
+pub(crate) use body_file::{MAX_ACTIONS, read_body};
+pub use drive::{Bicycle, DriveLimits};
 pub use fan::ScanFan;
+pub(crate) use shipped_bodies::{SHIPPED_BODIES, shipped_body};
 pub use table::{SETTINGS, Setting, SettingError, SettingShape, Value, apply};
 pub use words::{CombineWay, LearnerKind, Lens, RecoverTo};
 
@@ -76,10 +83,12 @@ pub struct RunSettings {
 
 /// A robot's body and motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[allow(missing_docs, reason = "every field but the body is documented in the table of settings")]
+#[allow(missing_docs, reason = "the other fields are documented in the table of settings")]
 pub struct RobotSettings {
-    /// Its body; no script can choose another yet.
+    /// Its body.
     pub body: BodyShape,
+    /// What its drive can do.
+    pub drive: DriveLimits,
     pub lag_s: f64,
     pub speed_noise: f64,
     pub slip: f64,
@@ -204,6 +213,7 @@ impl Default for Settings {
             run: RunSettings { steps: 5_200, test_steps: 5_000, period_s: 0.5 },
             robot: RobotSettings {
                 body: BodyShape::pioneer2at(),
+                drive: DriveLimits::default(),
                 lag_s: 0.15,
                 speed_noise: 0.05,
                 slip: 0.0,

@@ -5,12 +5,14 @@ mod bodies;
 use super::*;
 use crate::diagnostic::SourceText;
 use crate::geometry::Point3;
-use crate::settings::{BodyShape, Footprint};
+use crate::settings::{BodyShape, DriveLimits, Footprint};
 use std::f64::consts::FRAC_PI_2;
 
 const PIONEER: BodyShape = BodyShape::pioneer2at();
 const HALF_LENGTH_M: f64 = 0.2485;
-const EXACT: RobotSettings = RobotSettings { body: PIONEER, lag_s: 0.0, speed_noise: 0.0, slip: 0.0, tick_s: 0.05 };
+const DRIVE: DriveLimits = DriveLimits { greatest_m_per_s: 2.0, greatest_rad_per_s: 6.0, bicycle: None };
+const EXACT: RobotSettings =
+    RobotSettings { body: PIONEER, drive: DRIVE, lag_s: 0.0, speed_noise: 0.0, slip: 0.0, tick_s: 0.05 };
 
 /// A round robot of the size of a TurtleBot3 Waffle.
 const ROUND: RobotSettings = RobotSettings {
@@ -18,6 +20,7 @@ const ROUND: RobotSettings = RobotSettings {
         footprint: Footprint::Round { radius_m: 0.22 },
         height_m: 0.2,
         step_m: 0.01,
+        steepest: f64::INFINITY,
         wheelbase_m: 0.2,
         track_m: 0.29,
     },

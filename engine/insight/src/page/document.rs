@@ -10,6 +10,7 @@ use super::track::{Moments, ScanShape};
 use crate::lint::{self, Report};
 use engine::diagnostic::Result;
 use engine::experiment::{Plan, WINDOW_STEPS};
+use engine::geometry::Twist;
 use engine::learner::Carry;
 use engine::settings::{SETTINGS, Settings, Value};
 use engine::stats::Sorted;
@@ -42,6 +43,8 @@ pub struct Document {
     pub unit_m: f64,
     /// Half of the robot's length and width, metres.
     pub robot_half_m: [f64; 2],
+    /// The robot's outline in its own axes, metres.
+    pub robot_outline_m: Vec<[f64; 2]>,
     /// Time between two steps, seconds.
     pub period_s: f64,
     /// Steps in a window of the curve.
@@ -162,6 +165,7 @@ impl Document {
             unit_m: (2.0 * far / REACH).max(0.001),
             world,
             robot_half_m: robot.body.footprint.half_m(),
+            robot_outline_m: robot.body.footprint.outline_m(),
             period_s: run.period_s,
             window_steps: WINDOW_STEPS,
             planned_steps: plan.learning_steps(),
@@ -248,7 +252,21 @@ fn settings(plan: &Plan) -> Vec<SettingView> {
         };
         SettingView { name: row.name(), value, unit: row.unit, changed }
     });
-    let mut all: Vec<SettingView> = filters.chain(rows).collect();
+    let mut all: Vec<SettingView> = robot(plan).into_iter().chain(filters).chain(rows).collect();
     all.sort_by_key(|setting| !setting.changed);
     all
+}
+
+/// The body that the script names, and the actions if they are not those of every script.
+fn robot(plan: &Plan) -> Vec<SettingView> {
+    let view = |name: &str, value: String, unit| SettingView { name: name.to_owned(), value, unit, changed: true };
+    let body = plan.behaviour.body().and_then(|body| body.path.file_stem());
+    let mut robot: Vec<SettingView> =
+        body.map(|name| view("robot", name.to_string_lossy().into_owned(), "")).into_iter().collect();
+    let actions = &plan.settings.actions;
+    if *actions != Settings::default().actions {
+        let pair = |twist: &Twist| format!("[{}, {}]", twist.linear_m_per_s, twist.angular_rad_per_s);
+        robot.push(view("actions", actions.iter().map(pair).collect::<Vec<_>>().join(" "), "(m/s, rad/s)"));
+    }
+    robot
 }

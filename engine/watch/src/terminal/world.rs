@@ -180,13 +180,13 @@ fn robot(view: &View, document: &Document, map: &Map, record: &Record, area: Rec
     let style = if record.contact || record.fallen { view.ink.bad() } else { Style::new() };
     let (sin, cos) = libm::sincos(record.pose.yaw_rad);
     let centre = (record.pose.x_m, record.pose.y_m);
-    let [half, side] = document.robot_half_m;
+    let [half, _] = document.robot_half_m;
     let mut body = Dots::new(area.width, area.height);
     if half * map.scale >= 2.0 {
         let corner = |(along, across): (f64, f64)| {
             map.at((centre.0 + cos * along - sin * across, centre.1 + sin * along + cos * across))
         };
-        let corners = [(half, side), (-half, side), (-half, -side), (half, -side)].map(corner);
+        let corners: Vec<Dot> = document.robot_outline_m.iter().map(|[x, y]| corner((*x, *y))).collect();
         body.fill(&corners, 1, Rank::Front, style);
     }
     body.line(map.at(centre), map.at((centre.0 + NOSE_M * cos, centre.1 + NOSE_M * sin)), None, Rank::Front, style);

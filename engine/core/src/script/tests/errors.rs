@@ -5,7 +5,7 @@ use crate::diagnostic::{Diagnostic, Kind};
 use crate::random::{Random, Stream};
 use crate::script::Behaviour;
 
-fn wrong(text: &str) -> Diagnostic {
+pub(super) fn wrong(text: &str) -> Diagnostic {
     *parse(text).map(|_| ()).expect_err(text)
 }
 

@@ -165,7 +165,11 @@ class WorldMap {
     const grow = Math.max(1, 6 / half);
     pen.scale(grow, grow);
     pen.fillStyle = flags & (CONTACT | FALLEN) ? ink.bad : ink.text;
-    pen.fillRect(-half, -side, 2 * half, 2 * side);
+    const outline = doc.robot_outline_m.map((at) => at.map((metres) => metres * this.view.scale));
+    pen.beginPath();
+    for (const [x, y] of outline) pen.lineTo(x, -y);
+    pen.fill();
+    pen.translate(Math.max(...outline.map(([x]) => x)) - half, 0);
     pen.fillStyle = ink.paper;
     pen.beginPath();
     pen.moveTo(half * 0.75, 0);
