@@ -107,6 +107,7 @@ pub struct CameraSettings {
     pub height_m: f64,
     pub tilt_deg: f64,
     pub noise: f64,
+    pub own_body: bool,
 }
 
 /// The laser and its mount.
@@ -229,6 +230,7 @@ impl Default for Settings {
                 height_m: 0.81,
                 tilt_deg: 42.0,
                 noise: 2.0,
+                own_body: false,
             },
             // Range limits of the SICK LMS 200 in Gazebo 0.7, the simulator of the paper's time.
             laser: LaserSettings {

@@ -266,7 +266,10 @@ fn robot(plan: &Plan) -> Vec<SettingView> {
     let actions = &plan.settings.actions;
     if *actions != Settings::default().actions {
         let pair = |twist: &Twist| format!("[{}, {}]", twist.linear_m_per_s, twist.angular_rad_per_s);
-        robot.push(view("actions", actions.iter().map(pair).collect::<Vec<_>>().join(" "), "(m/s, rad/s)"));
+        let cut = plan.behaviour.place_of("actions").is_none()
+            && actions.iter().all(|action| Settings::default().actions.contains(action));
+        let unit = if cut { "(m/s, rad/s), those of every script that it can do" } else { "(m/s, rad/s)" };
+        robot.push(view("actions", actions.iter().map(pair).collect::<Vec<_>>().join(" "), unit));
     }
     robot
 }
