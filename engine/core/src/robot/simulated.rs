@@ -123,7 +123,7 @@ mod tests {
     #[test]
     fn a_camera_sees_the_body_below_it_only_where_it_is_told_to() {
         let text = "[[material]]\nname = \"red\"\ncolour = [200, 0, 0]\n[floor]\nmaterial = \"red\"\n\
-                    [[wall]]\npoints_m = [[2, -9], [2, 9]]\n[[start]]\nposition_m = [0, 0]\n";
+                    [[wall]]\npoints_m = [[-9, 0.5], [9, 0.5]]\n[[start]]\nposition_m = [0, 0]\n";
         let look = |own_body: bool| {
             let mut settings = Settings::default();
             settings.recovery.to = RecoverTo::Start;
