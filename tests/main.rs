@@ -60,6 +60,7 @@ mod replay;
 /// The paper's claims through the program, quickly; the map that a test leaves.
 mod reproduce;
 /// What a run leaves, and that it is well-formed.
+mod robots;
 mod run_folder;
 /// Every script and world that ships can be used, and the reference pages are current.
 mod shipped;

@@ -21,6 +21,7 @@ use engine::random::{Random, Stream};
 use engine::robot::{Robot, Whereabouts};
 use engine::script::Behaviour;
 use engine::sensors::observation::Observation;
+use engine::settings::ScanFan;
 
 const SCRIPT: &str = "world(\"room\");\n\
                       run(#{ steps: 2000, test_steps: 400 });\n\
@@ -107,10 +108,10 @@ fn lost(error: &std::io::Error) -> Box<Diagnostic> {
 
 impl Robot for Remote {
     fn observe(&mut self, observation: &mut Observation) -> Result<()> {
-        let last = (observation.scan.ranges_m.len() - 1) as f64;
-        for beam in 0..observation.scan.ranges_m.len() {
-            let bearing = (beam as f64 / last - 0.5) * std::f64::consts::PI;
-            observation.scan.ranges_m[beam] = self.range_m(bearing) as f32;
+        // Its laser looks over half a circle, as `laser.field_of_view_deg` says.
+        let fan = ScanFan { beams: observation.scan.ranges_m.len(), view_deg: 180.0 };
+        for beam in 0..fan.beams {
+            observation.scan.ranges_m[beam] = self.range_m(fan.bearing_rad(beam)) as f32;
         }
         let image = &mut observation.image;
         let (width, height, channels) = (image.width_px, image.height_px, image.format.channels());

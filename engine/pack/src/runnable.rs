@@ -48,7 +48,8 @@ impl Pack {
         }
         let script = manifest.entry.script.as_str();
         let stem = script.rsplit('/').next().and_then(|file| file.strip_suffix(".rhai")).unwrap_or(script);
-        let behaviour = Arc::new(Behaviour::parse(stem, self.text(script)?)?);
+        let bodies = |name: &str| self.body(name, depends).map(Some);
+        let behaviour = Arc::new(Behaviour::parse_with(stem, self.text(script)?, &bodies)?);
         let settings = behaviour.settings().clone();
         let layout = Arc::new(Layout::parse(self.world(&behaviour, depends)?, &settings.robot.body)?);
         let unpacked = self.unpack_filters(depends)?;
@@ -98,6 +99,19 @@ impl Pack {
         let message = format!("{} has no world '{}'", self.title(), printable(name));
         let help = format!("its author puts worlds/{}.toml into the pack", printable(name));
         at(behaviour, "world", malformed("E-PACK-WORLD", message).help(help), "not in the pack").fail()
+    }
+
+    /// The file of a body that the script names: the pack carries it, so that its evidence holds with another engine too.
+    fn body(&self, name: &str, depends: &[Self]) -> Result<SourceText> {
+        let file = format!("robots/{name}.toml");
+        let tried = [inside("", &file), inside(self.script_folder(), &file)];
+        for pack in std::iter::once(self).chain(depends) {
+            if let Some(path) = tried.iter().flatten().find(|path| pack.file(path).is_some()) {
+                return pack.text(path);
+            }
+        }
+        let message = format!("{} has no robot '{}'", self.title(), printable(name));
+        malformed("E-PACK-ROBOT", message).help(format!("its author puts {file} into the pack")).fail()
     }
 
     fn policies(&self, behaviour: &Behaviour) -> Result<Vec<SourceText>> {

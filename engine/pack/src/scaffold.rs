@@ -115,6 +115,11 @@ fn collect(plan: &Plan, files: &mut Files) -> Result<Option<String>> {
     files.insert(format!("scripts/{stem}.rhai"), plan.behaviour.source().text.as_bytes().to_vec());
     let world = format!("worlds/{}.toml", plan.layout.name.to_lowercase());
     files.insert(world.clone(), plan.layout.source.text.as_bytes().to_vec());
+    if let Some(body) = plan.behaviour.body()
+        && let Some(name) = body.path.file_name()
+    {
+        files.insert(format!("robots/{}", name.to_string_lossy()), body.text.as_bytes().to_vec());
+    }
     for (member, policy) in with_policies(plan.clone())?.members.iter().zip(&plan.settings.policies) {
         let Some(path) = inside("scripts", policy.path.trim_end_matches("policy.toml")) else {
             let message = format!("the policy '{}' stands outside the pack", printable(&policy.path));

@@ -230,7 +230,9 @@ impl Relearner {
         let plan =
             Plan::load(&self.desk.settings.behaviour, &self.desk.settings.overrides, &self.desk.settings.filters)?;
         let world = plan.layout.source.path.clone();
-        files.lock().unwrap_or_else(PoisonError::into_inner).watch([world])?;
+        // A body that ships is no file.
+        let body = plan.behaviour.body().map(|body| body.path.clone()).filter(|path| path.exists());
+        files.lock().unwrap_or_else(PoisonError::into_inner).watch([Some(world), body].into_iter().flatten())?;
         Ok(plan)
     }
 

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use super::{Cycle, Observer, Step};
 use crate::geometry::Pose;
 use crate::robot::Robot;
-use crate::settings::LaserSettings;
+use crate::settings::{LaserSettings, ScanFan};
 use crate::world::Layout;
 
 /// Edge of a cell, metres.
@@ -60,9 +60,10 @@ impl CertaintyGrid {
     fn add(&mut self, robot: Pose, ranges_m: &[f32]) {
         let (sin, cos) = libm::sincos(robot.yaw_rad);
         let at = [robot.x_m + self.laser.forward_m * cos, robot.y_m + self.laser.forward_m * sin];
-        let apart_rad = std::f64::consts::PI / (ranges_m.len().max(2) - 1) as f64;
+        let fan = ScanFan { beams: ranges_m.len(), ..self.laser.fan() };
+        let first_rad = robot.yaw_rad - 0.5 * fan.view_deg.to_radians();
         for (beam, range_m) in ranges_m.iter().enumerate() {
-            let yaw_rad = robot.yaw_rad - std::f64::consts::FRAC_PI_2 + beam as f64 * apart_rad;
+            let yaw_rad = first_rad + beam as f64 * fan.apart_rad();
             self.add_beam(at, yaw_rad, f64::from(*range_m));
         }
     }

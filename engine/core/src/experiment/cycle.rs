@@ -10,9 +10,6 @@ use crate::state::{Grid, StateMap};
 use super::{Eyes, Plan, SeenView, Step, ViewStage};
 use filter_api::Format;
 
-/// From the first beam of the laser to the last, degrees.
-const LASER_VIEW_DEG: f64 = 180.0;
-
 /// A robot with what turns its observations into states and rewards. It does not know who chooses the actions.
 pub struct Cycle<R> {
     robot: R,
@@ -28,6 +25,7 @@ pub struct Cycle<R> {
     /// What the judge's delayed rules have built up.
     potential: f64,
     laser_range_m: (f64, f64),
+    laser_view_deg: f64,
 }
 
 impl<R> Cycle<R> {
@@ -80,6 +78,7 @@ impl<R: Robot> Cycle<R> {
             since_recovery: 0,
             potential: 0.0,
             laser_range_m: (settings.laser.min_range_m, settings.laser.max_range_m),
+            laser_view_deg: settings.laser.field_of_view_deg,
         };
         cycle.observation.ground = cycle.judge.reads_ground().then(Default::default);
         cycle.perceive()?;
@@ -237,7 +236,7 @@ impl<R: Robot> Cycle<R> {
         facts.angular_rad_per_s = self.observation.odometry.angular_rad_per_s;
         facts.step = step;
         facts.since_recovery = self.since_recovery;
-        (facts.laser_range_m, facts.laser_view_deg) = (self.laser_range_m, LASER_VIEW_DEG);
+        (facts.laser_range_m, facts.laser_view_deg) = (self.laser_range_m, self.laser_view_deg);
     }
 
     /// By rule: what each added in the last step, if it fired.

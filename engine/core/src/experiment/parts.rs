@@ -29,7 +29,7 @@ impl Parts<'_> {
         let chain =
             views && !unread.any_of("filter") && every(&mut |view| mistakes.take(self.tried_chain(view)).is_some());
         let grid = views && !unread.any_of("grid") && every(&mut |view| mistakes.take(self.grid(view)).is_some());
-        if !unread.has("laser", "beams") {
+        if !unread.has("laser", "beams") && !unread.has("laser", "field_of_view_deg") {
             mistakes.take(self.judge());
         }
         if grid && !["actions", "learner", "state", "stages"].iter().any(|call| unread.any_of(call)) {
@@ -151,7 +151,7 @@ impl Parts<'_> {
 
     /// A fresh judge.
     pub(super) fn judge(&self) -> Result<Judge> {
-        self.behaviour.judge(self.settings.run.period_s, self.settings.laser.beams as usize)
+        self.behaviour.judge(self.settings.run.period_s, self.settings.laser.fan())
     }
 
     fn point(&self, error: Diagnostic, place: &str, label: &str, help: Option<String>) -> Box<Diagnostic> {

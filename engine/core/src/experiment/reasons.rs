@@ -146,9 +146,9 @@ impl StepReasons {
 impl RuleReasons {
     fn of(plan: &Plan, text: &RuleText, judge: &Judge, rule: usize) -> Self {
         let (held, needed) = judge.held(rule);
-        let beams = plan.settings.laser.beams as usize;
+        let fan = plan.settings.laser.fan();
         let fact = |fact: FactRead| FactReasons {
-            angle_deg: fact.beam.map(|beam| beam_angle_deg(beam, beams)),
+            angle_deg: fact.beam.map(|beam| fan.bearing_deg(beam)),
             name: fact.name,
             value: fact.value,
             unit: fact.unit,
@@ -170,10 +170,4 @@ impl RuleReasons {
             parts: judge.evidence(rule).into_iter().map(part).collect(),
         }
     }
-}
-
-/// Where a beam of a laser with so many beams over 180 degrees looks: degrees from straight ahead, positive to the left.
-#[must_use]
-pub fn beam_angle_deg(beam: usize, beams: usize) -> f64 {
-    180.0 * beam as f64 / (beams.max(2) - 1) as f64 - 90.0
 }

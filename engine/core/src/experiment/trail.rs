@@ -14,6 +14,8 @@ pub struct Trail {
     pub legs: Vec<Vec<[f32; 2]>>,
     /// Where the script asked for recovery.
     pub failures: Vec<[f32; 2]>,
+    /// Where the robot stands at the end, if anything knows.
+    pub last: Option<Pose>,
 }
 
 impl Trail {
@@ -36,7 +38,7 @@ impl Recorder {
     pub(super) fn new(steps: u64, robot: &impl Robot) -> Self {
         let mut leg = Vec::with_capacity(steps as usize + 1);
         leg.extend(place(robot));
-        Self { trail: Trail { legs: vec![leg], failures: Vec::new() }, left: steps }
+        Self { trail: Trail { legs: vec![leg], failures: Vec::new(), last: None }, left: steps }
     }
 
     pub(super) fn finish(self) -> Trail {
@@ -50,6 +52,7 @@ impl<R: Robot> Observer<R> for Recorder {
         if self.left > 0
             && let Some(place) = place(cycle.robot())
         {
+            self.trail.last = cycle.robot().whereabouts().map(|here| here.pose);
             if let Some(leg) = self.trail.legs.last_mut() {
                 leg.push(place);
             }

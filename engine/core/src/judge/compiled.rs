@@ -8,6 +8,7 @@ use super::readings::Part;
 use super::rule::CompiledRule;
 use super::stopped::StopPlaces;
 use crate::diagnostic::{Mistakes, Result, SourceText};
+use crate::settings::ScanFan;
 use rhai::{AST, Dynamic, Engine, Position, Scope};
 use std::ops::Range;
 
@@ -79,17 +80,28 @@ impl CompiledScript {
         self.looks_back || self.counts_way || !self.remembered.is_empty() || parts
     }
 
-    /// Checks that every beam that is named exists.
+    /// Checks that every beam and every bearing that is named exists.
     ///
     /// # Errors
     /// For each that does not.
-    pub(crate) fn check_beams(&self, beams: usize) -> Result<()> {
-        let outside = |beam: i64| usize::try_from(beam).map_or(true, |beam| beam >= beams);
-        let wrong = self.needs.beams.iter().filter(|(beam, _)| outside(*beam)).map(|(beam, position)| {
-            let message = format!("beam numbers run from 0 to {}", beams.saturating_sub(1));
-            (*position, message, format!("found {beam}"))
+    pub(crate) fn check_beams(&self, fan: ScanFan) -> Result<()> {
+        let outside = |beam: i64| usize::try_from(beam).map_or(true, |beam| beam >= fan.beams);
+        let beams = self.needs.beams.iter().filter(|(beam, _)| outside(*beam)).map(|(beam, position)| {
+            let message = format!("beam numbers run from 0 to {}", fan.beams.saturating_sub(1));
+            (*position, message, format!("found {beam}"), None)
         });
-        self.told(wrong)
+        let unseen = self.needs.bearings.iter().filter(|(bearing_deg, _)| !fan.sees(*bearing_deg));
+        let bearings = unseen.map(|(bearing_deg, position)| {
+            let message = format!("the laser sees {} degrees to either side", 0.5 * fan.view_deg);
+            let help = match 2.0 * bearing_deg.abs() {
+                wanted if wanted <= 360.0 => {
+                    format!("write laser(#{{ field_of_view_deg: {wanted} }}), or another bearing")
+                }
+                _ => "bearings run from -180 to 180 degrees, positive to the left".to_owned(),
+            };
+            (*position, message, format!("{bearing_deg} degrees are out of its view"), Some(help))
+        });
+        self.told(beams.chain(bearings))
     }
 
     /// Checks that every grid cell that is named exists; `size` gives rows and columns of a view's grid. Allocates nothing if
@@ -118,20 +130,24 @@ impl CompiledScript {
                 (Some(row), None) => format!("found row {row}"),
                 (None, column) => format!("found column {}", column.unwrap_or_default()),
             };
-            (cell.position, message, found)
+            (cell.position, message, found, None)
         }))
     }
 
     /// Places that are wrong, each with what is wrong and what was found, as one error.
-    fn told(&self, wrong: impl Iterator<Item = (Position, String, String)>) -> Result<()> {
+    fn told(&self, wrong: impl Iterator<Item = (Position, String, String, Option<String>)>) -> Result<()> {
         let mut wrong = wrong.peekable();
         if wrong.peek().is_none() {
             return Ok(());
         }
         let source = &self.source;
         let mut mistakes = Mistakes::new(source);
-        for (position, message, found) in wrong {
-            mistakes.add(explain::mistake(source, "E-SCRIPT-FACT", position, message, found));
+        for (position, message, found, help) in wrong {
+            let mistake = explain::mistake(source, "E-SCRIPT-FACT", position, message, found);
+            mistakes.add(match help {
+                Some(help) => mistake.help(help),
+                None => mistake,
+            });
         }
         mistakes.end()
     }

@@ -36,7 +36,10 @@ pub struct Fact {
 
 /// The groups of facts, with what each is about.
 pub(crate) const GROUPS: &[(&str, &str)] = &[
-    ("laser", "The ranges of the laser: beam 0 looks right, the last beam left, the middle one ahead."),
+    (
+        "laser",
+        "The ranges of the laser: beam 0 looks farthest to the right, the last beam to the left, the middle one ahead.",
+    ),
     (
         "camera",
         "What the filters left of the camera's image; a named view has the same facts under its name: `red.seen`.",
@@ -76,9 +79,9 @@ macro_rules! facts {
 facts! {
     LaserNearest: laser "nearest", Metres, Laser, Nearest, Number(|f| decimal(least(&f.ranges_m))), "The least range of all beams.";
     LaserFarthest: laser "farthest", Metres, Laser, Farthest, Number(|f| decimal(greatest(&f.ranges_m))), "The greatest range of all beams.";
-    LaserRight: laser "right", Metres, Laser, Right, Number(|f| f.beam_m(0)), "The range of beam 0, square to the right.";
-    LaserFront: laser "front", Metres, Laser, Front, Number(|f| f.beam_m(f.front_beam())), "The range of the middle beam, ahead; of two the lesser.";
-    LaserLeft: laser "left", Metres, Laser, Left, Number(|f| f.beam_m(f.ranges_m.len().saturating_sub(1))), "The range of the last beam, square to the left.";
+    LaserRight: laser "right", Metres, Laser, Right, Number(|f| f.beam_m(f.beam_towards(-90.0))), "The range of the beam square to the right, at -90 degrees.";
+    LaserFront: laser "front", Metres, Laser, Front, Number(|f| f.beam_m(f.beam_towards(0.0))), "The range of the middle beam, ahead; of two the lesser.";
+    LaserLeft: laser "left", Metres, Laser, Left, Number(|f| f.beam_m(f.beam_towards(90.0))), "The range of the beam square to the left, at 90 degrees.";
     LaserNearestBeam: laser "nearest_beam", Unit::Beam, Beams, Nearest, Whole(|f| f.nearest_beam() as i64), "The number of the beam with the least range.";
     LaserBeams: laser "beams", Unit::Beams, Beams, NoBeam, Whole(|f| f.ranges_m.len() as i64), "How many beams there are.";
     LaserBeam: laser "[", Metres, Laser, Given, Call("laser[beam]", 1), "The range of one beam.";
@@ -282,7 +285,7 @@ mod tests {
         let front = |ranges_m: &[f32]| {
             let facts = Facts { ranges_m: ranges_m.to_vec(), ..Facts::default() };
             let Getter::Number(get) = FactId::LaserFront.fact().get else { panic!() };
-            (get(&facts), facts.front_beam())
+            (get(&facts), facts.beam_towards(0.0))
         };
         assert_eq!(front(&[1.0, 3.0, 2.0, 1.0]), (2.0, 2));
         assert_eq!(front(&[1.0, 2.0, 3.0, 1.0]), (2.0, 1));

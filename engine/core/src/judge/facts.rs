@@ -2,6 +2,7 @@
 
 use super::odometry::Odometry;
 use super::view_facts::ViewFacts;
+use crate::settings::ScanFan;
 
 /// The measurements that rules and `fn reward(facts)` read, refilled in every step.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -75,22 +76,21 @@ impl Facts {
         self.ranges_m.get(from..=to).unwrap_or_default()
     }
 
+    /// Where the beams look.
+    fn fan(&self) -> ScanFan {
+        ScanFan { beams: self.ranges_m.len(), view_deg: self.laser_view_deg }
+    }
+
     /// The beam whose bearing is nearest to this one, the right one of two; the outermost for a bearing beyond it.
     #[must_use]
     pub(super) fn beam_at(&self, bearing_deg: f64) -> usize {
-        let last = self.ranges_m.len().saturating_sub(1);
-        let at = (bearing_deg + 0.5 * self.laser_view_deg) / self.laser_view_deg.max(1e-9) * last as f64;
-        // A beam exactly between two is the right one's, whatever rounding makes of it.
-        (at - 1e-9).round().clamp(0.0, last as f64) as usize
+        self.fan().nearest(bearing_deg)
     }
 
     /// The beams whose bearings lie between two, both included; nothing if there are none.
     #[must_use]
     pub(super) fn beams_between(&self, from_deg: f64, to_deg: f64) -> (usize, usize) {
-        let last = self.ranges_m.len().saturating_sub(1) as f64;
-        let at = |bearing_deg: f64| (bearing_deg + 0.5 * self.laser_view_deg) / self.laser_view_deg.max(1e-9) * last;
-        let (from, to) = ((at(from_deg) - 1e-9).ceil().max(0.0), (at(to_deg) + 1e-9).floor().min(last));
-        if from > to { (1, 0) } else { (from as usize, to as usize) }
+        self.fan().between(from_deg, to_deg)
     }
 
     /// Whether a beam met anything nearer than the greatest range.
@@ -99,14 +99,11 @@ impl Facts {
         self.ranges_m.get(beam).is_some_and(|range| decimal(*range) < self.laser_range_m.1)
     }
 
-    /// The beam ahead: the middle one; of two middle ones that with the lesser range, the right one of equals.
+    /// The beam towards a bearing; of two that are equally near that with the lesser range, the right one of equals.
     #[must_use]
-    pub(super) fn front_beam(&self) -> usize {
-        let middle = self.ranges_m.len() / 2;
-        match self.ranges_m.len() % 2 {
-            0 if middle > 0 && self.ranges_m[middle - 1] <= self.ranges_m[middle] => middle - 1,
-            _ => middle,
-        }
+    pub(super) fn beam_towards(&self, bearing_deg: f64) -> usize {
+        let (right, left) = self.fan().neighbours(bearing_deg);
+        if self.ranges_m.get(left) < self.ranges_m.get(right) { left } else { right }
     }
 
     /// The beam with the least range, the rightmost of equals.

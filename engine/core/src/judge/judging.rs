@@ -11,6 +11,7 @@ use super::readings::{self, PartRead};
 use super::views::{number, wrong_length};
 use crate::diagnostic::{Diagnostic, Result};
 use crate::geometry::Twist;
+use crate::settings::ScanFan;
 use rhai::{Dynamic, Map};
 use std::sync::Arc;
 
@@ -50,11 +51,12 @@ struct StageNow {
 }
 
 impl Judge {
-    pub(crate) fn new(compiled: Arc<CompiledScript>, period_s: f64, beams: usize) -> Self {
+    pub(crate) fn new(compiled: Arc<CompiledScript>, period_s: f64, fan: ScanFan) -> Self {
         let needed: Vec<u32> = compiled.rules.iter().map(|rule| rule.persistence.steps(period_s)).collect();
         let entries = needed.len() + usize::from(compiled.reward.is_some());
         let scale: Vec<f64> = compiled.rules.iter().map(|rule| if rule.per_second { period_s } else { 1.0 }).collect();
-        let facts = Arc::new(Facts { ranges_m: vec![0.0; beams], ..Facts::default() });
+        let facts =
+            Arc::new(Facts { ranges_m: vec![0.0; fan.beams], laser_view_deg: fan.view_deg, ..Facts::default() });
         let calibrated = compiled.calibrate.is_none().then(Arc::default);
         let (held, fired) = (vec![0; needed.len()], vec![None; entries]);
         let built_up = compiled.rules.iter().zip(&needed).map(|(rule, needed)| match rule.fixed_value() {
@@ -70,7 +72,7 @@ impl Judge {
         let digits = vec![0; present.compiled.bins.len() + usize::from(!present.compiled.stages.is_empty())];
         Self {
             present,
-            beams,
+            beams: fan.beams,
             needed,
             held,
             built_up,

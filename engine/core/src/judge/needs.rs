@@ -20,6 +20,8 @@ pub(crate) struct Needs {
     pub slot_uses: Vec<SlotUse>,
     /// Beams that are named.
     pub beams: Vec<(i64, Position)>,
+    /// Bearings of the laser that are named, degrees.
+    pub bearings: Vec<(f64, Position)>,
     /// Stages that are named.
     pub stages: Vec<(String, Position)>,
     /// What is read of the views besides their grids, by their numbers.

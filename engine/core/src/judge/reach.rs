@@ -27,18 +27,17 @@ impl Limits {
     /// A beam at the angle `a` from the front falls by `sin(tilt) cos(a)` for each metre, so it meets the floor at the
     /// latest after `(height + drop) / (sin(tilt) cos(a))`. Noise may add six deviations to that.
     pub(crate) fn new(laser: &LaserSettings, drop_m: f64) -> Self {
-        let beams = (laser.beams as usize).max(2);
+        let fan = laser.fan();
         let fall = libm::sin(laser.tilt_deg.to_radians());
         let longest = |beam: usize| {
-            let angle = std::f64::consts::PI * (beam as f64 / (beams - 1) as f64 - 0.5);
-            // The outermost beams are level; rounding must not make them fall.
-            let fall = fall * libm::cos(angle) - 1e-9;
+            // The beams to the sides are level; rounding must not make them fall.
+            let fall = fall * libm::cos(fan.bearing_rad(beam)) - 1e-9;
             let floor_m = if fall > 0.0 { (laser.height_m + drop_m) / fall } else { f64::INFINITY };
             (floor_m + 6.0 * laser.noise_m).clamp(laser.min_range_m, laser.max_range_m.max(laser.min_range_m)) as f32
         };
-        let facts = |ranges_m: Vec<f32>| Facts { ranges_m, ..Facts::default() };
-        let low = facts(vec![laser.min_range_m as f32; beams]);
-        Self { low, high: facts((0..beams).map(longest).collect()), laser: laser.clone() }
+        let facts = |ranges_m: Vec<f32>| Facts { ranges_m, laser_view_deg: fan.view_deg, ..Facts::default() };
+        let low = facts(vec![laser.min_range_m as f32; fan.beams]);
+        Self { low, high: facts((0..fan.beams).map(longest).collect()), laser: laser.clone() }
     }
 
     fn of_beams(&self, from: usize, to: usize, of: impl Fn(&[f32]) -> f64) -> Interval {

@@ -55,8 +55,8 @@ pub(crate) struct Reading {
 pub(crate) enum BeamSought {
     Nowhere,
     One(usize),
-    Middle,
-    Last,
+    /// The one of a bearing, and of two that are equally near the lesser.
+    Towards(f64),
     Given(f64),
     Least(BeamSpan),
     Greatest(BeamSpan),
@@ -108,9 +108,9 @@ impl BeamSought {
     pub(crate) const fn of(beam: Beam, span: BeamSpan) -> Self {
         match beam {
             Beam::Without | Beam::Given | Beam::Worst => Self::Nowhere,
-            Beam::Right => Self::One(0),
-            Beam::Front => Self::Middle,
-            Beam::Left => Self::Last,
+            Beam::Right => Self::Towards(-90.0),
+            Beam::Front => Self::Towards(0.0),
+            Beam::Left => Self::Towards(90.0),
             Beam::Nearest => Self::Least(span),
             Beam::Farthest => Self::Greatest(span),
         }
@@ -128,8 +128,7 @@ impl BeamSought {
         match self {
             Self::Nowhere => None,
             Self::One(beam) => Some(beam),
-            Self::Middle => Some(inputs.facts.front_beam()),
-            Self::Last => Some(last),
+            Self::Towards(bearing_deg) => Some(inputs.facts.beam_towards(bearing_deg)),
             Self::Given(bearing_deg) => Some(inputs.facts.beam_at(bearing_deg)),
             Self::Least(span) => find(span, least),
             Self::Greatest(span) => find(span, greatest),

@@ -21,7 +21,7 @@ pub(crate) const MAX_NESTING: usize = 48;
 pub(crate) const MAX_TEXT_BYTES: usize = 4096;
 /// Values in one array: more than any laser has beams. Comparing two arrays is one operation, however long they are, so
 /// that this and the operations together bound the time.
-pub(crate) const MAX_ARRAY: usize = 1024;
+pub(crate) const MAX_ARRAY: usize = 2048;
 /// Keys in one map.
 pub(crate) const MAX_MAP: usize = 64;
 /// Variables at one time.

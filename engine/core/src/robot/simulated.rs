@@ -8,9 +8,10 @@ use crate::geometry::{Pose, Twist};
 use crate::sensors::observation::{Image, Observation};
 use crate::sensors::{Camera, CameraWatch, GroundSensors, Laser, self_test};
 use crate::settings::{CameraSettings, Settings};
+use crate::world::scene::Solid;
 use crate::world::{Layout, Motion, World};
 
-/// A Pioneer 2-AT with a camera and a laser, in a world.
+/// A robot with a body, a camera and a laser, in a world.
 pub struct SimulatedRobot {
     world: World,
     camera: Camera,
@@ -20,6 +21,8 @@ pub struct SimulatedRobot {
     recovery: Recovery,
     motion: Motion,
     moved: bool,
+    /// Where the camera sees the robot's own body: what it sees that moves, and room for it.
+    own: Option<Vec<Solid>>,
 }
 
 impl SimulatedRobot {
@@ -38,9 +41,10 @@ impl SimulatedRobot {
         world.place(0, start);
         // Noise would hide a blank image from the test.
         let mut quiet = Camera::new(&layout.scene, &CameraSettings { noise: 0.0, ..settings.camera.clone() }, seed);
-        self_test(&mut quiet, &world.body(0).world_from_robot(), world.seen_by(0))?;
+        let mut own = settings.camera.own_body.then(|| Vec::with_capacity(world.seen_by(0).len() + 1));
+        self_test(&mut quiet, &world.body(0).world_from_robot(), in_view(&world, &mut own))?;
         let (watch, motion) = (CameraWatch::new(), Motion::default());
-        Ok(Self { world, camera, laser, ground, watch, recovery, motion, moved: false })
+        Ok(Self { world, camera, laser, ground, watch, recovery, motion, moved: false, own })
     }
 
     /// The truth, for tests and reports only.
@@ -50,10 +54,20 @@ impl SimulatedRobot {
     }
 }
 
+/// What the camera sees that does not belong to the scene: what moves, and the robot's own body if `own` has room for it.
+fn in_view<'a>(world: &'a World, own: &'a mut Option<Vec<Solid>>) -> &'a [Solid] {
+    let Some(solids) = own else { return world.seen_by(0) };
+    solids.clear();
+    solids.extend_from_slice(world.seen_by(0));
+    solids.push(world.solid_of(0));
+    solids
+}
+
 impl Robot for SimulatedRobot {
     fn observe(&mut self, observation: &mut Observation) -> Result<()> {
         let world_from_robot = self.world.body(0).world_from_robot();
-        self.camera.render(&world_from_robot, self.world.seen_by(0), &mut observation.image);
+        let moving = in_view(&self.world, &mut self.own);
+        self.camera.render(&world_from_robot, moving, &mut observation.image);
         self.watch.check(&observation.image, self.moved)?;
         self.laser.scan(&world_from_robot, self.world.seen_by(0), &mut observation.scan);
         if let Some(colours) = &mut observation.ground {
@@ -98,7 +112,38 @@ impl Robot for SimulatedRobot {
         let mut camera = self.camera.clone();
         camera.set_frames(camera.frames().saturating_sub(1));
         let mut image = Image::new(0, 0);
-        camera.render(&self.world.body(0).world_from_robot(), self.world.seen_by(0), &mut image);
+        let mut own = self.own.clone();
+        camera.render(&self.world.body(0).world_from_robot(), in_view(&self.world, &mut own), &mut image);
         Some(image)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnostic::SourceText;
+    use crate::settings::RecoverTo;
+    use filter_api::Format;
+
+    #[test]
+    fn a_camera_sees_the_body_below_it_only_where_it_is_told_to() {
+        let text = "[[material]]\nname = \"red\"\ncolour = [200, 0, 0]\n[floor]\nmaterial = \"red\"\n\
+                    [[wall]]\npoints_m = [[-9, 0.5], [9, 0.5]]\n[[start]]\nposition_m = [0, 0]\n";
+        let look = |own_body: bool| {
+            let mut settings = Settings::default();
+            settings.recovery.to = RecoverTo::Start;
+            settings.camera = CameraSettings { own_body, tilt_deg: 90.0, noise: 0.0, ..settings.camera };
+            let layout = Layout::parse(SourceText::new("w.toml", text), &settings.robot.body).unwrap();
+            let mut robot = SimulatedRobot::new(&Arc::new(layout), &settings, 1).unwrap();
+            let mut observation = Observation::asking_for(Format::Rgb, 160, 120, 181);
+            robot.observe(&mut observation).unwrap();
+            let pixel = (60 * 160 + 80) * 3;
+            let middle = observation.image.pixels[pixel..pixel + 3].to_vec();
+            (middle, observation.scan.ranges_m)
+        };
+        let ((floor, without), (body, with)) = (look(false), look(true));
+        assert!(floor[0] > 2 * floor[1].max(1), "{floor:?}");
+        assert!(body[1] > 40 && body[1] == body[2], "{body:?}");
+        assert_eq!(without, with);
     }
 }

@@ -8,7 +8,7 @@ use crate::judge::memory::Remembered;
 use crate::judge::rule::CompiledRule;
 use crate::judge::{Judge, RuleText, reach};
 use crate::outcome::Then;
-use crate::settings::{LaserSettings, Settings};
+use crate::settings::{LaserSettings, ScanFan, Settings};
 use crate::verdict::{Endable, Probe, Success, SuccessCondition};
 use std::ops::Range;
 use std::sync::Arc;
@@ -35,6 +35,7 @@ pub struct Behaviour {
     compiled: Arc<CompiledScript>,
     success: Vec<SuccessCondition>,
     endable: Endable,
+    body: Option<SourceText>,
 }
 
 impl Behaviour {
@@ -55,11 +56,31 @@ impl Behaviour {
         let stages = !compiled.stages.is_empty();
         let endable = Endable { stages, ..endable(&compiled.rules, outline.reward_recovers) };
         let compiled = Arc::new(compiled);
-        Self { name: name.to_owned(), settings, places, rules, outline, compiled, success: Vec::new(), endable }
+        Self {
+            name: name.to_owned(),
+            settings,
+            places,
+            rules,
+            outline,
+            compiled,
+            success: Vec::new(),
+            endable,
+            body: None,
+        }
     }
 
     pub(super) fn with_success(self, success: Vec<SuccessCondition>) -> Self {
         Self { success, ..self }
+    }
+
+    pub(super) fn with_body(self, body: Option<SourceText>) -> Self {
+        Self { body, ..self }
+    }
+
+    /// The file of the body that it names, if it names one.
+    #[must_use]
+    pub fn body(&self) -> Option<&SourceText> {
+        self.body.as_ref()
     }
 
     /// What is called success in a world with a lap route or without one, in a test that takes so many seconds.
@@ -165,15 +186,15 @@ impl Behaviour {
     /// A judge with fresh counters, for one seed; `period_s` is the time between two steps, in seconds.
     ///
     /// # Errors
-    /// If a rule names a beam that a laser with `beams` beams does not have.
-    pub(crate) fn judge(&self, period_s: f64, beams: usize) -> Result<Judge> {
-        self.compiled.check_beams(beams)?;
-        Ok(self.unchecked_judge(period_s, beams))
+    /// If a rule names a beam or a bearing that such a laser does not have.
+    pub(crate) fn judge(&self, period_s: f64, fan: ScanFan) -> Result<Judge> {
+        self.compiled.check_beams(fan)?;
+        Ok(self.unchecked_judge(period_s, fan))
     }
 
     /// A judge for rules that may name beams that the laser does not have: these must not be judged.
-    pub(super) fn unchecked_judge(&self, period_s: f64, beams: usize) -> Judge {
-        Judge::new(Arc::clone(&self.compiled), period_s, beams)
+    pub(super) fn unchecked_judge(&self, period_s: f64, fan: ScanFan) -> Judge {
+        Judge::new(Arc::clone(&self.compiled), period_s, fan)
     }
 
     pub(super) fn compiled(&self) -> &CompiledScript {

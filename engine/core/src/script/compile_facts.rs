@@ -29,8 +29,8 @@ impl Compiler<'_> {
                 Some(Typed::Flag(Flag::Stage(stage)))
             }
             ("laser", [Link::Call(call, _)]) if let [of] = call.args.as_slice() => match call.name.as_str() {
-                "at" => Some(Typed::Number(Number::BeamAt(self.constant(of)?))),
-                "hit_at" => Some(Typed::Flag(Flag::HitAt(self.constant(of)?))),
+                "at" => Some(Typed::Number(Number::BeamAt(self.bearing(of)?))),
+                "hit_at" => Some(Typed::Flag(Flag::HitAt(self.bearing(of)?))),
                 "hit" => Some(Typed::Flag(Flag::Hit(self.beam(of)?))),
                 _ => None,
             },
@@ -70,7 +70,7 @@ impl Compiler<'_> {
                 (from <= to).then_some(BeamSpan::Numbers(from, to))
             }
             "between" => {
-                let (from, to) = (self.constant(from)?, self.constant(to)?);
+                let (from, to) = (self.bearing(from)?, self.bearing(to)?);
                 (from < to).then_some(BeamSpan::Bearings(from, to))
             }
             _ => None,
@@ -127,6 +127,13 @@ impl Compiler<'_> {
             Typed::Whole(Number::Constant(value)) => Some(value as i64),
             _ => None,
         }
+    }
+
+    /// A constant bearing, degrees.
+    pub(super) fn bearing(&mut self, expr: &Expr) -> Option<f64> {
+        let bearing_deg = self.constant(expr)?;
+        self.needs.bearings.push((bearing_deg, expr.start_position()));
+        Some(bearing_deg)
     }
 
     pub(super) fn beam(&mut self, expr: &Expr) -> Option<usize> {

@@ -3,6 +3,7 @@
 use super::behaviour::Behaviour;
 use super::bodies::outline_of;
 use super::compile::{Compiler, Vocabulary};
+use super::named_body::{BodyFiles, beside};
 use super::outline::ScriptOutline;
 use super::rules::{rules, stage};
 use super::setup::{self, Log, SetUp};
@@ -43,17 +44,17 @@ impl Draft {
     /// If nothing can be understood after a mistake: the file cannot be read as a script, or a limit stopped it.
     pub(crate) fn load(path: &Path) -> Result<Self> {
         let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-        Self::read(&name, source::read(path)?)
+        Self::read(&name, source::read(path)?, &beside(path))
     }
 
     /// Looks for mistakes in a script's text; `name` is the behaviour's.
     ///
     /// # Errors
     /// As [`Draft::load`].
-    fn read(name: &str, source: SourceText) -> Result<Self> {
+    fn read(name: &str, source: SourceText, files: &BodyFiles<'_>) -> Result<Self> {
         let code = source::check_text(source)?;
         let mut mistakes = Mistakes::new(&code.source);
-        match Self::understood(name, &code, &mut mistakes) {
+        match Self::understood(name, &code, files, &mut mistakes) {
             Ok((behaviour, unread)) => Ok(Self { behaviour, mistakes, unread }),
             Err(last) => Err(mistakes.ended_by(last)),
         }
@@ -70,6 +71,7 @@ impl Draft {
     fn understood(
         name: &str,
         code: &Code,
+        files: &BodyFiles<'_>,
         mistakes: &mut Mistakes,
     ) -> std::result::Result<(Behaviour, Unread), Diagnostic> {
         let mut engine = sandbox::engine();
@@ -93,12 +95,12 @@ impl Draft {
         let constants = top_level::run(&engine, code, &tree, &log, &mut spoilt, mistakes)?;
         spoilt.spread(mistakes);
         let calls = spoilt.setup_calls(mistakes);
-        let SetUp { settings, places, mut unread, bins } = setup::finish(&log, code, &tree.ast, mistakes);
+        let SetUp { settings, places, mut unread, bins, body } = setup::finish(&log, code, &tree.ast, files, mistakes);
         calls.into_iter().for_each(|call| unread.all_of(call));
         engine.register_global_module(constants_module(&constants).into());
         let read = ReadScript { code, tree, engine, constants, settings: &settings, needs, bins };
         let (compiled, outline, success) = read.compile(&spoilt, mistakes)?;
-        let behaviour = Behaviour::new(name, settings, places, outline, compiled).with_success(success);
+        let behaviour = Behaviour::new(name, settings, places, outline, compiled).with_success(success).with_body(body);
         check_with_settings(&behaviour, &mut spoilt, &unread, mistakes)?;
         Ok((behaviour, unread))
     }
@@ -189,12 +191,20 @@ impl Behaviour {
         Draft::load(path)?.end()
     }
 
-    /// Loads a script from its text; `name` is the behaviour's.
+    /// Loads a script from its text; `name` is the behaviour's. Of bodies it knows those that ship.
     ///
     /// # Errors
     /// If anything in it is wrong.
     pub fn parse(name: &str, source: SourceText) -> Result<Self> {
-        Draft::read(name, source)?.end()
+        Self::parse_with(name, source, &|_| Ok(None))
+    }
+
+    /// Loads a script from its text, with `bodies` before those that ship.
+    ///
+    /// # Errors
+    /// If anything in it, or in the file of its body, is wrong.
+    pub fn parse_with(name: &str, source: SourceText, bodies: &BodyFiles<'_>) -> Result<Self> {
+        Draft::read(name, source, bodies)?.end()
     }
 }
 
@@ -206,9 +216,9 @@ fn check_with_settings(
     mistakes: &mut Mistakes,
 ) -> std::result::Result<(), Diagnostic> {
     let (settings @ Settings { run, laser, .. }, compiled) = (behaviour.settings(), behaviour.compiled());
-    let beams = laser.beams as usize;
-    if !unread.has("laser", "beams") {
-        mistakes.take(compiled.check_beams(beams));
+    let (fan, seen) = (laser.fan(), !unread.has("laser", "beams") && !unread.has("laser", "field_of_view_deg"));
+    if seen {
+        mistakes.take(compiled.check_beams(fan));
     }
     if !unread.has("grid", "rows") && !unread.has("grid", "columns") && !unread.any_of("view") {
         // A view that could not be read has any cell.
@@ -221,11 +231,11 @@ fn check_with_settings(
         behaviour.find_unreachable(laser, f64::INFINITY, mistakes);
     }
     // Rules that name beams of another laser cannot be tried.
-    if unread.has("laser", "beams") && compiled.check_beams(beams).is_err() {
+    if !seen && compiled.check_beams(fan).is_err() {
         return Ok(());
     }
     spoilt.spread(mistakes);
-    let judge = behaviour.unchecked_judge(run.period_s, beams);
+    let judge = behaviour.unchecked_judge(run.period_s, fan);
     rehearsal::rehearse(judge, behaviour.settings(), spoilt, mistakes).map_err(|last| *last)
 }
 

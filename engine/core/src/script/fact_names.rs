@@ -42,6 +42,9 @@ impl Names<'_> {
                     self.sector(next);
                 }
             }
+            [Link::Property(key @ ("left" | "right"), position), ..] if group == "laser" => {
+                self.needs.bearings.push((if *key == "left" { 90.0 } else { -90.0 }, *position));
+            }
             [Link::Property(key, position), ..] => match value(self.row_group(group), key) {
                 None => self.no_fact(group, key, *position),
                 Some(fact) => self.look(self.code.views.index(group), fact),
@@ -119,6 +122,9 @@ impl Names<'_> {
                 self.mistake("E-SCRIPT-FACT", position, message, "here", format!("write {form}"));
             }
             Some(_) if matches!(name, "sector" | "hit") => call.args.iter().for_each(|beam| self.beam(beam)),
+            Some(_) if matches!(name, "at" | "hit_at" | "between") && group == "laser" => {
+                call.args.iter().for_each(|of| self.bearing(of));
+            }
             Some(_) if matches!(name, "cell" | "rows" | "columns") => {
                 let view = self.code.views.index(group).unwrap_or(0);
                 let whole = |argument: &Expr| match argument {
@@ -139,6 +145,15 @@ impl Names<'_> {
             return self.mistake("E-SCRIPT-STAGE", position, message, "here", "write stage.at(\"name\")");
         };
         self.needs.stages.push((name.to_string(), *at));
+    }
+
+    fn bearing(&mut self, bearing: &Expr) {
+        let (bearing_deg, position) = match bearing {
+            Expr::IntegerConstant(number, position) => (*number as f64, *position),
+            Expr::FloatConstant(number, position) => (**number, *position),
+            _ => return,
+        };
+        self.needs.bearings.push((bearing_deg, position));
     }
 
     fn beam(&mut self, beam: &Expr) {

@@ -5,6 +5,7 @@
 //! What is judged in every step, and how, is the room `judge`.
 
 mod access;
+mod actions;
 mod behaviour;
 mod bodies;
 mod compile;
@@ -13,6 +14,7 @@ mod draft;
 mod fact_names;
 mod measures;
 mod memory;
+mod named_body;
 mod names;
 mod outline;
 mod parts;
@@ -21,9 +23,10 @@ mod reader;
 mod reference;
 mod refused;
 mod rehearsal;
+mod robot_setup;
 mod rules;
 mod setup;
-mod setup_lists;
+mod setup_stages;
 mod setup_table;
 mod setup_views;
 mod source;
@@ -43,6 +46,7 @@ mod words;
 pub use behaviour::Behaviour;
 pub(crate) use behaviour::Measurable;
 pub(crate) use draft::Draft;
+pub use named_body::BodyFiles;
 pub use outline::{BeamLoop, Compared, Condition, Gathers, NamedFact, RuleOutline, ScriptOutline, UnusedName};
 pub use reference::{definitions, reference};
 pub(crate) use unread::Unread;

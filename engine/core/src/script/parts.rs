@@ -127,7 +127,7 @@ fn describe(code: &Code, access: &Access<'_>, compiler: &mut Compiler<'_>) -> Op
         (Beam::Given, [Link::Index(beam)]) => BeamSought::One(compiler.beam(beam)?),
         (Beam::Given, [Link::Call(call, _)]) if group == "laser" => match (call.name.as_str(), call.args.as_slice()) {
             ("hit", [of]) => BeamSought::One(compiler.beam(of)?),
-            (_, [of]) => BeamSought::Given(compiler.constant(of)?),
+            (_, [of]) => BeamSought::Given(compiler.bearing(of)?),
             _ => BeamSought::Nowhere,
         },
         (beam, [Link::Call(call, _), rest @ ..]) if group == "laser" => {

@@ -1,10 +1,11 @@
 //! The set-up calls at the top of a script: written down while it runs, then turned into settings.
 
+use super::named_body::{BodyFiles, NamedBody};
 use super::setup_table::SETUP;
 use super::source::Code;
 use super::state_parts::WrittenBins;
 use super::unread::Unread;
-use crate::diagnostic::{Diagnostic, Mistakes, Result, printable};
+use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, printable};
 use crate::judge::explain;
 use crate::judge::views::number;
 use crate::settings::{self, PolicySettings, Settings, Value};
@@ -98,15 +99,28 @@ pub(super) struct SetUp {
     pub unread: Unread,
     /// The values of the script that its states tell apart.
     pub bins: Vec<WrittenBins>,
+    /// The file of the body that is named.
+    pub body: Option<SourceText>,
 }
 
-/// Ends the set-up: the settings that the calls make, over the defaults. Every call that is wrong is added to `mistakes`,
+/// Ends the set-up: the settings that the calls make, over the defaults of the body that
+/// it names in `files`, or of the engine. Every call that is wrong is added to `mistakes`,
 /// with its place: an unknown key, a value out of range, a setting made twice.
-pub(super) fn finish(log: &Log, code: &Code, ast: &AST, mistakes: &mut Mistakes) -> SetUp {
+pub(super) fn finish(log: &Log, code: &Code, ast: &AST, files: &BodyFiles<'_>, mistakes: &mut Mistakes) -> SetUp {
     let (settings, places, unread) = (Settings::default(), SettingPlaces::new(), Unread::default());
     let (call, entries, bins) = (Position::NONE, OnceCell::new(), Vec::new());
-    let mut setup = SetupReader { code, ast, settings, places, unread, mistakes, call, entries, bins };
+    let body = None;
+    let mut setup = SetupReader { code, ast, settings, places, unread, mistakes, call, entries, bins, body };
     let mut calls = log.close();
+    for call in calls.iter().filter(|call| call.name == "robot") {
+        setup.call = call.position;
+        let named = call.arguments.first().filter(|name| name.is_string() && call.arguments.len() < 3);
+        let form = SETUP.iter().find(|row| row.name == "robot").map_or("", |row| row.form);
+        if let Some(Err(wrong)) = named.map(|name| setup.body(name.clone(), form, files)) {
+            setup.mistakes.add(*wrong);
+            ["robot", "camera", "laser", "actions"].iter().for_each(|group| setup.unread.all_of(group));
+        }
+    }
     setup.views(&mut calls);
     for call in calls {
         setup.call = call.position;
@@ -115,7 +129,11 @@ pub(super) fn finish(log: &Log, code: &Code, ast: &AST, mistakes: &mut Mistakes)
             setup.unread.all_of(call.name);
         }
     }
-    SetUp { settings: setup.settings, places: setup.places, unread: setup.unread, bins: setup.bins }
+    if !setup.unread.any_of("robot") && !setup.unread.any_of("actions") {
+        setup.check_actions();
+    }
+    let SetupReader { settings, places, unread, bins, body, .. } = setup;
+    SetUp { settings, places, unread, bins, body: body.map(|body| body.source) }
 }
 
 /// Where keys and their values stand, by call and key.
@@ -125,13 +143,14 @@ pub(super) struct SetupReader<'a> {
     pub(super) code: &'a Code,
     pub(super) ast: &'a AST,
     pub(super) settings: Settings,
-    places: SettingPlaces,
+    pub(super) places: SettingPlaces,
     pub(super) unread: Unread,
     pub(super) mistakes: &'a mut Mistakes,
     /// Where the present call stands.
     pub(super) call: Position,
     entries: OnceCell<Entries>,
     pub(super) bins: Vec<WrittenBins>,
+    pub(super) body: Option<NamedBody>,
 }
 
 impl SetupReader<'_> {
@@ -150,10 +169,7 @@ impl SetupReader<'_> {
             ("state", first, second, third) => {
                 self.state(first.into_iter().chain(second).chain(third).chain(arguments))
             }
-            ("actions", Some(actions), None, None) if actions.is_array() => {
-                self.settings.actions = self.actions(actions)?;
-                self.mark("actions".to_owned(), self.call)
-            }
+            ("actions", Some(actions), None, None) if actions.is_array() => self.actions(actions),
             ("stages", Some(stages), None, None) if stages.is_array() => {
                 self.settings.stages = self.stages(stages)?;
                 self.mark("stages".to_owned(), self.call)
@@ -163,6 +179,10 @@ impl SetupReader<'_> {
                 let place = format!("policy:{}", self.settings.policies.len());
                 self.settings.policies.push(policy);
                 self.mark(place, self.call)
+            }
+            // The body itself is read before any setting.
+            ("robot", Some(name), map, None) if name.is_string() => {
+                map.map_or(Ok(()), |map| self.group("robot", map, form))
             }
             ("learner" | "recovery" | "combine", Some(kind), map, None) if kind.is_string() => {
                 let key = match name {

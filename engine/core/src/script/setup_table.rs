@@ -40,7 +40,11 @@ pub(super) const SETUP: &[SetupCall] = &[
         "What the robot can be about: it begins with the first, also after every recovery. The stage is one more digit of the state.",
     ),
     row("run", "run(#{ steps: 5200 });", "The length and the rhythm of a run."),
-    row("robot", "robot(#{ lag_s: 0.15 });", "How the robot moves."),
+    row(
+        "robot",
+        "robot(\"turtlebot3\", #{ lag_s: 0.15 });",
+        "The robot: the name of its body, and how it moves. Without a name it is `pioneer2at`.",
+    ),
     row("camera", "camera(#{ tilt_deg: 42 });", "The camera and its mount."),
     row("laser", "laser(#{ tilt_deg: 45 });", "The laser and its mount."),
     row("ground", "ground(#{ ahead_m: 0.1, aside_m: 0.15 });", "Three sensors that look down at paint and floor."),

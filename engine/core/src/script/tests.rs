@@ -5,6 +5,7 @@ mod memory;
 mod mistakes;
 mod pages;
 mod remembered;
+mod robots;
 mod running;
 mod same;
 mod success;
@@ -16,15 +17,21 @@ use super::*;
 use crate::diagnostic::{Diagnostic, SourceText};
 use crate::judge::{Judge, Judgement, ViewFacts};
 use crate::outcome::Then;
+use crate::settings::ScanFan;
 
 pub(super) fn parse(text: &str) -> Result<Behaviour, Box<Diagnostic>> {
     Behaviour::parse("test", SourceText::new("test.rhai", text))
 }
 
+/// So many beams over half a circle.
+pub(super) const fn fan(beams: usize) -> ScanFan {
+    ScanFan { beams, view_deg: 180.0 }
+}
+
 /// A judge of a script over 181 beams at 2 m, two steps a second.
 pub(super) fn judge(text: &str) -> Judge {
     let behaviour = parse(text).unwrap_or_else(|wrong| panic!("{wrong:?}"));
-    let mut judge = behaviour.judge(0.5, 181).unwrap();
+    let mut judge = behaviour.judge(0.5, fan(181)).unwrap();
     let facts = judge.facts_mut();
     facts.ranges_m.fill(2.0);
     facts.views = vec![ViewFacts { grid: (3, 3), cells: vec![0.0; 9], ..ViewFacts::default() }];
@@ -74,7 +81,7 @@ fn recovery_starts_the_count_again() {
 fn seconds_are_rounded_up_to_steps() {
     let far = |time: &str, period_s: f64| {
         let script = format!("rule \"far\" when laser.right > 1.0 for {time} => -1;");
-        let mut judge = parse(&script).unwrap().judge(period_s, 181).unwrap();
+        let mut judge = parse(&script).unwrap().judge(period_s, fan(181)).unwrap();
         judge.facts_mut().ranges_m.fill(2.0);
         judge.facts_mut().views = vec![ViewFacts { grid: (3, 3), ..ViewFacts::default() }];
         1 + rewards(&mut judge, 100).iter().position(|&reward| reward != 0.0).unwrap()
@@ -152,7 +159,7 @@ fn what_was_calibrated_is_read_in_rules_and_in_the_reward() {
 #[test]
 fn an_uncalibrated_judge_refuses() {
     let behaviour = parse("fn calibrate(facts) { 1 } rule \"a\" when laser.right > calibrated => 1;").unwrap();
-    let mut judge = behaviour.judge(0.5, 181).unwrap();
+    let mut judge = behaviour.judge(0.5, fan(181)).unwrap();
     assert!(judge.judge().is_err());
 }
 

@@ -9,13 +9,13 @@ use crate::random::{NORMAL_RUN, normal_table};
 use crate::settings::LaserSettings;
 use crate::world::scene::{Scene, Shape, Solid};
 use dispatch::{Processor, compiled_for_each_processor};
-use std::f64::consts::PI;
+use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 /// Address of the laser's noise within a scan; no image has such a row, so the camera's noise is another.
 const NOISE_ROW: u64 = u64::MAX;
 
-/// A scanning laser fixed to the robot: beams over 180 degrees, beam 0 to the right, anticlockwise.
+/// A scanning laser fixed to the robot: beams side by side, beam 0 rightmost, anticlockwise.
 ///
 /// It sees solids whose material returns light, movers, and the floor; not paint. It looks through solids from inside.
 #[derive(Debug, Clone)]
@@ -26,18 +26,26 @@ pub struct Laser {
     min_range_m: f64,
     max_range_m: f64,
     noise_m: f32,
-    /// In the robot's axes: the lens's place, and the front beam, the leftmost beam, and the normal of the scan.
-    mount: [Vector3; 4],
     surfaces: Surfaces,
     moving: Surfaces,
     seen: Vec<usize>,
+    /// One that looks ahead; or two, to the right and to the left, of a laser that sees more than half a circle.
+    sides: Vec<Side>,
+}
+
+/// Neighbouring beams that lie within half a circle.
+#[derive(Debug, Clone)]
+struct Side {
+    /// In the robot's axes: the lens's place, and the middle of the side, a quarter turn left of it, and the normal of the
+    /// scan.
+    mount: [Vector3; 4],
     beams: Beams,
 }
 
 /// What each beam has met so far.
 #[derive(Debug, Clone)]
 struct Beams {
-    /// Directions in the plane of the scan: ahead and to the left.
+    /// Directions in the plane of the scan: along the middle of the side and to the left of it.
     ahead: Vec<f64>,
     left: Vec<f64>,
     ranges_m: Vec<f64>,
@@ -56,9 +64,6 @@ impl Laser {
     /// A laser in a scene. `seed` decides the noise.
     #[must_use]
     pub fn new(scene: &Arc<Scene>, settings: &LaserSettings, seed: u64) -> Self {
-        let count = settings.beams as usize;
-        let angle = |beam: usize| PI * (beam as f64 / (count.max(2) - 1) as f64 - 0.5);
-        let (sin, cos) = libm::sincos(settings.tilt_deg.to_radians());
         Self {
             scene: Arc::clone(scene),
             seed,
@@ -66,21 +71,10 @@ impl Laser {
             min_range_m: settings.min_range_m,
             max_range_m: settings.max_range_m,
             noise_m: settings.noise_m as f32,
-            mount: [
-                Vector3::new(settings.forward_m, 0.0, settings.height_m),
-                Vector3::new(cos, 0.0, -sin),
-                Vector3::y(),
-                Vector3::new(sin, 0.0, cos),
-            ],
             surfaces: Surfaces::new(&scene.parts().solids),
             moving: Surfaces::with_room(),
             seen: Vec::with_capacity(scene.parts().solids.len()),
-            beams: Beams {
-                ahead: (0..count).map(|beam| libm::cos(angle(beam))).collect(),
-                left: (0..count).map(|beam| libm::sin(angle(beam))).collect(),
-                ranges_m: vec![0.0; count],
-                processor: Processor::best(),
-            },
+            sides: sides(settings),
         }
     }
 
@@ -94,58 +88,83 @@ impl Laser {
     /// forward; `moving` are the solids that do not belong to the scene, where they stand now.
     pub fn scan(&mut self, world_from_robot: &Isometry3, moving: &[Solid], scan: &mut Scan) {
         let turn = world_from_robot.rotation.to_rotation_matrix();
-        let [place, ahead, left, normal] = self.mount.map(|vector| turn * vector);
-        let plane = Plane { position: world_from_robot.translation.vector + place, ahead, left, normal };
-        self.beams.start(&plane, self.max_range_m);
-        self.find_near(&plane);
         let parts = self.scene.parts();
-        for &index in &self.seen {
-            let solid = &parts.solids[index];
-            if solid.collides && parts.materials[solid.material].laser {
-                self.beams.meet(&plane, &self.surfaces, index, solid);
+        for side in &mut self.sides {
+            let [place, ahead, left, normal] = side.mount.map(|vector| turn * vector);
+            let plane = Plane { position: world_from_robot.translation.vector + place, ahead, left, normal };
+            side.beams.start(&plane, self.max_range_m);
+            find_near(&self.scene, &plane, self.max_range_m, &mut self.seen);
+            for &index in &self.seen {
+                let solid = &parts.solids[index];
+                if solid.collides && parts.materials[solid.material].laser {
+                    side.beams.meet(&plane, &self.surfaces, index, solid);
+                }
             }
-        }
-        for solid in moving.iter().filter(|solid| solid.collides && parts.materials[solid.material].laser) {
-            self.moving.clear();
-            // A cylinder is measured as itself, not by faces.
-            if !matches!(solid.shape, Shape::Cylinder { .. }) {
-                self.moving.push(solid);
+            for solid in moving.iter().filter(|solid| solid.collides && parts.materials[solid.material].laser) {
+                self.moving.clear();
+                // A cylinder is measured as itself, not by faces.
+                if !matches!(solid.shape, Shape::Cylinder { .. }) {
+                    self.moving.push(solid);
+                }
+                side.beams.meet(&plane, &self.moving, 0, solid);
             }
-            self.beams.meet(&plane, &self.moving, 0, solid);
         }
         self.measure(scan);
         self.scans += 1;
     }
 
-    /// Lists the solids that the scan may reach.
-    fn find_near(&mut self, plane: &Plane) {
-        let (position, reach) = (plane.position, self.max_range_m);
-        let level = plane.normal.dot(&position);
-        let mut spaces = [HalfSpace::new(&plane.ahead, plane.ahead.dot(&position)); 9];
-        spaces[1] = HalfSpace::new(&plane.normal, level);
-        spaces[2] = HalfSpace::new(&-plane.normal, -level);
-        for (axis, pair) in [Vector3::x(), Vector3::y(), Vector3::z()].iter().zip(spaces[3..].chunks_exact_mut(2)) {
-            pair[0] = HalfSpace::new(axis, axis.dot(&position) - reach);
-            pair[1] = HalfSpace::new(&-axis, -axis.dot(&position) - reach);
-        }
-        self.seen.clear();
-        let seen = &mut self.seen;
-        let keep = |min, max| spaces.iter().all(|space| space.meets(&min, &max));
-        self.scene.visit(keep, |solid| seen.push(solid));
-    }
-
     /// Turns true ranges into measured ones.
     fn measure(&self, scan: &mut Scan) {
         let (min_m, max_m) = (self.min_range_m as f32, self.max_range_m as f32);
-        scan.ranges_m.resize(self.beams.ranges_m.len(), max_m);
+        scan.ranges_m.resize(self.sides.iter().map(|side| side.beams.ranges_m.len()).sum(), max_m);
         let start = noise::start(self.seed, self.scans, NOISE_ROW);
-        let draws = &normal_table()[start..start + NORMAL_RUN];
-        for ((range, truth), draw) in scan.ranges_m.iter_mut().zip(&self.beams.ranges_m).zip(draws) {
-            let measured = (*truth as f32 + self.noise_m * draw).max(min_m).min(max_m);
-            // Where nothing is seen there is nothing to be noisy about.
-            *range = if *truth >= self.max_range_m { max_m } else { measured };
+        let (mut rest, mut draws) = (scan.ranges_m.as_mut_slice(), &normal_table()[start..start + NORMAL_RUN]);
+        for side in &self.sides {
+            let truths = &side.beams.ranges_m;
+            let (ranges_m, later) = rest.split_at_mut(truths.len());
+            for ((range, truth), draw) in ranges_m.iter_mut().zip(truths).zip(draws) {
+                let measured = (*truth as f32 + self.noise_m * draw).max(min_m).min(max_m);
+                // Where nothing is seen there is nothing to be noisy about.
+                *range = if *truth >= self.max_range_m { max_m } else { measured };
+            }
+            (rest, draws) = (later, &draws[truths.len()..]);
         }
     }
+}
+
+/// The sides of a laser: what is beside a line is only known within half a circle.
+fn sides(settings: &LaserSettings) -> Vec<Side> {
+    let (sin, cos) = libm::sincos(settings.tilt_deg.to_radians());
+    let place = Vector3::new(settings.forward_m, 0.0, settings.height_m);
+    let (ahead, left, normal) = (Vector3::new(cos, 0.0, -sin), Vector3::y(), Vector3::new(sin, 0.0, cos));
+    let fan = settings.fan();
+    let side = |from: usize, to: usize, middle_rad: f64, middle: Vector3, left: Vector3| {
+        let along = |of: fn(f64) -> f64| (from..to).map(|beam| of(fan.bearing_rad(beam) - middle_rad)).collect();
+        let (ahead, aside) = (along(libm::cos), along(libm::sin));
+        let beams = Beams { ahead, left: aside, ranges_m: vec![0.0; to - from], processor: Processor::best() };
+        Side { mount: [place, middle, left, normal], beams }
+    };
+    if fan.view_deg <= 180.0 {
+        return vec![side(0, fan.beams, 0.0, ahead, left)];
+    }
+    let right = (0..fan.beams).take_while(|beam| fan.bearing_rad(*beam) < 0.0).count();
+    vec![side(0, right, -FRAC_PI_2, -left, ahead), side(right, fan.beams, FRAC_PI_2, left, -ahead)]
+}
+
+/// Lists the solids that the beams of a side may reach.
+fn find_near(scene: &Scene, plane: &Plane, reach: f64, seen: &mut Vec<usize>) {
+    let position = plane.position;
+    let level = plane.normal.dot(&position);
+    let mut spaces = [HalfSpace::new(&plane.ahead, plane.ahead.dot(&position)); 9];
+    spaces[1] = HalfSpace::new(&plane.normal, level);
+    spaces[2] = HalfSpace::new(&-plane.normal, -level);
+    for (axis, pair) in [Vector3::x(), Vector3::y(), Vector3::z()].iter().zip(spaces[3..].chunks_exact_mut(2)) {
+        pair[0] = HalfSpace::new(axis, axis.dot(&position) - reach);
+        pair[1] = HalfSpace::new(&-axis, -axis.dot(&position) - reach);
+    }
+    seen.clear();
+    let keep = |min, max| spaces.iter().all(|space| space.meets(&min, &max));
+    scene.visit(keep, |solid| seen.push(solid));
 }
 
 impl Plane {
@@ -288,10 +307,10 @@ impl Beams {
         let tangent = square.sqrt();
         let right_end = [ahead * tangent + left * reach, left * tangent - ahead * reach];
         let left_end = [ahead * tangent - left * reach, left * tangent + ahead * reach];
-        let behind = |end: [f64; 2], beam: usize| if end[0] < 0.0 { Some(beam) } else { None };
+        // An end behind the laser lies on the centre's side of it, even where it is past straight behind.
         let count = self.ahead.len();
-        let first = behind(right_end, if right_end[1] < 0.0 { 0 } else { count });
-        let last = behind(left_end, if left_end[1] < 0.0 { 0 } else { count });
+        let behind = |end: [f64; 2]| (end[0] < 0.0).then_some(if left < 0.0 { 0 } else { count });
+        let (first, last) = (behind(right_end), behind(left_end));
         let first = first.unwrap_or_else(|| self.first_beam(right_end, |side| side > 0.0).saturating_sub(1));
         let last = last.unwrap_or_else(|| (self.first_beam(left_end, |side| side >= 0.0) + 1).min(count));
         (first, last)

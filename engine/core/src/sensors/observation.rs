@@ -40,7 +40,8 @@ impl Image {
     }
 }
 
-/// One sweep of the laser: a range for each beam, beam 0 rightmost, anticlockwise.
+/// One sweep of the laser: a range for each beam, beam 0 rightmost, anticlockwise; [`ScanFan`](crate::settings::ScanFan) says
+/// where each looks.
 ///
 /// ```text
 ///            beam 90 (front)

@@ -18,7 +18,10 @@ pub struct BodyShape {
     pub height_m: f64,
     /// Highest step that the wheels climb and the belly clears, and deepest that they go down without falling, metres.
     pub step_m: f64,
-    /// Distance between the axles, half of it ahead of the origin, metres.
+    /// Steepest ramp that it climbs, metres of height for each metre of way; infinite for any. Steeper ones are walls.
+    #[serde(default = "any_slope")]
+    pub steepest: f64,
+    /// Distance between the axles, half of it ahead of the footprint's middle, metres.
     pub wheelbase_m: f64,
     /// Distance between the left and the right wheels, half of it on each side of the origin, metres.
     pub track_m: f64,
@@ -58,6 +61,7 @@ impl BodyShape {
             footprint: Footprint::Rectangle { length_m: 0.497, width_m: 0.476, ahead_m: 0.0 },
             height_m: 0.45,
             step_m: 0.06,
+            steepest: f64::INFINITY,
             wheelbase_m: 0.274,
             track_m: 0.38,
         }
@@ -77,7 +81,47 @@ impl BodyShape {
     }
 }
 
+const fn any_slope() -> f64 {
+    f64::INFINITY
+}
+
 impl Footprint {
+    /// Length and width of the greatest rectangle within it, as far apart as its wheels can be, metres.
+    #[must_use]
+    pub(super) fn wheels_m(&self) -> [f64; 2] {
+        match *self {
+            Self::Rectangle { length_m, width_m, .. } => [length_m, width_m],
+            Self::Round { radius_m } => [radius_m * std::f64::consts::SQRT_2; 2],
+        }
+    }
+
+    /// Its corners, or 24 points of its circle, from the front left on anticlockwise; in the body's axes, metres.
+    #[must_use]
+    pub fn outline_m(&self) -> Vec<[f64; 2]> {
+        match *self {
+            Self::Rectangle { ahead_m, .. } => {
+                let [x, y] = self.half_m();
+                vec![[ahead_m + x, y], [ahead_m - x, y], [ahead_m - x, -y], [ahead_m + x, -y]]
+            }
+            Self::Round { radius_m } => (0..24)
+                .map(|point| libm::sincos(std::f64::consts::TAU * f64::from(point) / 24.0))
+                .map(|(sin, cos)| [radius_m * cos, radius_m * sin])
+                .collect(),
+        }
+    }
+
+    /// How far a place lies outside of the outline, metres; negative within it.
+    #[must_use]
+    pub fn outside_m(&self, x_m: f64, y_m: f64) -> f64 {
+        match *self {
+            Self::Rectangle { ahead_m, .. } => {
+                let [x, y] = self.half_m();
+                ((x_m - ahead_m).abs() - x).max(y_m.abs() - y)
+            }
+            Self::Round { radius_m } => (x_m * x_m + y_m * y_m).sqrt() - radius_m,
+        }
+    }
+
     /// Half of its length and half of its width, metres.
     #[must_use]
     pub fn half_m(&self) -> [f64; 2] {
@@ -89,7 +133,7 @@ impl Footprint {
 
     /// How far its middle lies ahead of the origin, metres.
     #[must_use]
-    pub(crate) fn ahead_m(&self) -> f64 {
+    pub fn ahead_m(&self) -> f64 {
         match *self {
             Self::Rectangle { ahead_m, .. } => ahead_m,
             Self::Round { .. } => 0.0,
@@ -109,6 +153,17 @@ mod tests {
         assert_eq!(BodyShape { footprint, ..BodyShape::pioneer2at() }.radius_m(), 0.5);
         let footprint = Footprint::Round { radius_m: 0.22 };
         assert_eq!(BodyShape { footprint, ..BodyShape::pioneer2at() }.radius_m(), 0.22);
+    }
+
+    #[test]
+    fn the_outline_goes_round_the_middle_that_lies_ahead() {
+        let footprint = Footprint::Rectangle { length_m: 0.6, width_m: 0.4, ahead_m: 0.2 };
+        assert_eq!(footprint.outline_m()[0], [0.5, 0.2]);
+        assert_eq!(footprint.outline_m()[2], [-0.09999999999999998, -0.2]);
+        assert!((footprint.outside_m(0.6, 0.0) - 0.1).abs() < 1e-12 && footprint.outside_m(0.2, 0.0) < -0.19);
+        let round = Footprint::Round { radius_m: 0.2 };
+        assert_eq!((round.outline_m().len(), round.outline_m()[0]), (24, [0.2, 0.0]));
+        assert!((round.outside_m(0.0, 0.25) - 0.05).abs() < 1e-12);
     }
 
     #[test]

@@ -4,12 +4,21 @@
 //! `--set`, `run.toml`, range checks and the reference page all read it.
 
 mod body;
+mod body_file;
+mod body_keys;
+mod drive;
+mod fan;
+mod shipped_bodies;
 mod table;
 mod views;
 mod words;
 
 use crate::geometry::Twist;
 pub use body::{BodyShape, Footprint};
+pub(crate) use body_file::{MAX_ACTIONS, read_body};
+pub use drive::{Bicycle, DriveLimits};
+pub use fan::ScanFan;
+pub(crate) use shipped_bodies::{SHIPPED_BODIES, shipped_body};
 pub use table::{SETTINGS, Setting, SettingError, SettingShape, Value, apply};
 pub use views::{FilterSettings, GridSettings, PartSettings, UNNAMED_VIEW, ViewSettings};
 pub use words::{CombineWay, LearnerKind, Lens, RecoverTo};
@@ -71,10 +80,12 @@ pub struct RunSettings {
 
 /// A robot's body and motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[allow(missing_docs, reason = "every field but the body is documented in the table of settings")]
+#[allow(missing_docs, reason = "the other fields are documented in the table of settings")]
 pub struct RobotSettings {
-    /// Its body; no script can choose another yet.
+    /// Its body.
     pub body: BodyShape,
+    /// What its drive can do.
+    pub drive: DriveLimits,
     pub lag_s: f64,
     pub speed_noise: f64,
     pub slip: f64,
@@ -93,6 +104,7 @@ pub struct CameraSettings {
     pub height_m: f64,
     pub tilt_deg: f64,
     pub noise: f64,
+    pub own_body: bool,
 }
 
 /// The laser and its mount.
@@ -100,12 +112,21 @@ pub struct CameraSettings {
 #[allow(missing_docs, reason = "every field is documented in the table of settings")]
 pub struct LaserSettings {
     pub beams: u64,
+    pub field_of_view_deg: f64,
     pub forward_m: f64,
     pub height_m: f64,
     pub tilt_deg: f64,
     pub min_range_m: f64,
     pub max_range_m: f64,
     pub noise_m: f64,
+}
+
+impl LaserSettings {
+    /// Where its beams look.
+    #[must_use]
+    pub fn fan(&self) -> ScanFan {
+        ScanFan { beams: self.beams as usize, view_deg: self.field_of_view_deg }
+    }
 }
 
 /// Three sensors that look down at the ground.
@@ -190,6 +211,7 @@ impl Default for Settings {
             run: RunSettings { steps: 5_200, test_steps: 5_000, period_s: 0.5 },
             robot: RobotSettings {
                 body: BodyShape::pioneer2at(),
+                drive: DriveLimits::default(),
                 lag_s: 0.15,
                 speed_noise: 0.05,
                 slip: 0.0,
@@ -205,10 +227,12 @@ impl Default for Settings {
                 height_m: 0.81,
                 tilt_deg: 42.0,
                 noise: 2.0,
+                own_body: false,
             },
             // Range limits of the SICK LMS 200 in Gazebo 0.7, the simulator of the paper's time.
             laser: LaserSettings {
                 beams: 181,
+                field_of_view_deg: 180.0,
                 forward_m: 0.18,
                 height_m: 0.38,
                 tilt_deg: 0.0,

@@ -147,7 +147,9 @@ settings! {
     camera.height_m, "metres", Number(0.05, 3.0), "Height of the camera above the floor.";
     camera.tilt_deg, "degrees", Number(-30.0, 90.0), "How far the camera looks down.";
     camera.noise, "grey levels", Number(0.0, 64.0), "Deviation of the pixel noise.";
-    laser.beams, "beams", Whole(3, 721), "Beams over 180 degrees, both ends included.";
+    camera.own_body, "", Flag, "Whether the camera sees the robot's own body where that is in its view.";
+    laser.beams, "beams", Whole(3, 1441), "Beams over the field of view, both ends included.";
+    laser.field_of_view_deg, "degrees", Number(10.0, 360.0), "From the first beam to the last; 360 looks all round.";
     laser.forward_m, "metres", Number(-1.0, 1.0), "Place of the laser ahead of the robot's centre.";
     laser.height_m, "metres", Number(0.02, 3.0), "Height of the laser above the floor.";
     laser.tilt_deg, "degrees", Number(-90.0, 90.0), "How far the laser looks down.";

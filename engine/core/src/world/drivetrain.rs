@@ -2,7 +2,7 @@
 
 use crate::geometry::Twist;
 use crate::random::Random;
-use crate::settings::RobotSettings;
+use crate::settings::{Bicycle, RobotSettings};
 
 /// The drive of the robot: wheels that follow a command with a first-order lag, and a ground on which they skid.
 #[derive(Debug, Clone)]
@@ -14,6 +14,8 @@ pub(super) struct Drivetrain {
     mean_left: f64,
     noise: f64,
     grip: f64,
+    /// The sharpest turn, radians for each metre of way; infinite for wheels that turn on the spot.
+    turn_rad_per_m: f64,
     wheels: Twist,
     factors: Twist,
     random: Random,
@@ -37,6 +39,7 @@ impl Drivetrain {
             mean_left,
             noise: robot.speed_noise,
             grip: 1.0 - robot.slip,
+            turn_rad_per_m: robot.drive.bicycle.map_or(f64::INFINITY, Bicycle::turn_rad_per_m),
             wheels: Twist::default(),
             factors: Twist::new(1.0, 1.0),
             random,
@@ -67,10 +70,20 @@ impl Drivetrain {
             *speed = target + behind * self.left;
             target + behind * self.mean_left
         };
-        Twist::new(
+        let mean = Twist::new(
             follow(command.linear_m_per_s * self.factors.linear_m_per_s, &mut self.wheels.linear_m_per_s),
             follow(command.angular_rad_per_s * self.factors.angular_rad_per_s, &mut self.wheels.angular_rad_per_s),
-        )
+        );
+        if self.turn_rad_per_m == f64::INFINITY {
+            return mean;
+        }
+        // Wheels that steer turn the robot only as far as it drives, whatever lags behind or is noisy.
+        let steered = |twist: Twist| {
+            let most = twist.linear_m_per_s.abs() * self.turn_rad_per_m;
+            Twist::new(twist.linear_m_per_s, twist.angular_rad_per_s.clamp(-most, most))
+        };
+        self.wheels = steered(self.wheels);
+        steered(mean)
     }
 
     /// What the ground makes of the wheels' speed: a skid-steered robot loses a share of its turn.
@@ -83,10 +96,17 @@ impl Drivetrain {
 mod tests {
     use super::*;
     use crate::random::Stream;
-    use crate::settings::BodyShape;
+    use crate::settings::{BodyShape, DriveLimits};
 
-    const EXACT: RobotSettings =
-        RobotSettings { body: BodyShape::pioneer2at(), lag_s: 0.0, speed_noise: 0.0, slip: 0.0, tick_s: 0.05 };
+    const DRIVE: DriveLimits = DriveLimits { greatest_m_per_s: 2.0, greatest_rad_per_s: 6.0, bicycle: None };
+    const EXACT: RobotSettings = RobotSettings {
+        body: BodyShape::pioneer2at(),
+        drive: DRIVE,
+        lag_s: 0.0,
+        speed_noise: 0.0,
+        slip: 0.0,
+        tick_s: 0.05,
+    };
 
     fn drivetrain(robot: &RobotSettings, period_s: f64) -> Drivetrain {
         Drivetrain::new(robot, period_s, Random::new(1, Stream::Drive))
@@ -106,6 +126,27 @@ mod tests {
         for tick_s in [0.1, 0.05, 0.01, 0.03] {
             assert!((distance(tick_s) - exact).abs() < 1e-12, "{tick_s}");
         }
+    }
+
+    #[test]
+    fn a_bicycle_that_stands_still_does_not_turn_and_one_that_starts_turns_as_it_gathers_way() {
+        let bicycle = Some(Bicycle { wheelbase_m: 0.33, steer_deg: 24.0 });
+        let drive = DriveLimits { bicycle, ..DRIVE };
+        let robot = RobotSettings { drive, lag_s: 0.3, speed_noise: 0.2, ..EXACT };
+        let mut train = drivetrain(&robot, 0.5);
+        train.begin();
+        assert_eq!(train.tick(Twist::new(0.0, 0.8)), Twist::default());
+        let mut greatest: f64 = 0.0;
+        for _ in 0..20 {
+            train.begin();
+            for _ in 0..train.ticks {
+                let twist = train.tick(Twist::new(0.4, -0.54));
+                // tan(24 degrees) / 0.33 m is 1.3492 rad/m.
+                assert!(twist.angular_rad_per_s.abs() <= 1.3493 * twist.linear_m_per_s, "{twist:?}");
+                greatest = greatest.max(twist.angular_rad_per_s.abs());
+            }
+        }
+        assert!(greatest > 0.4, "{greatest}");
     }
 
     #[test]

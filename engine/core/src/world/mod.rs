@@ -164,6 +164,15 @@ impl World {
         self.traffic.seen_by(index)
     }
 
+    /// The body with this index as others see it: upright, whatever slope it stands on.
+    ///
+    /// # Panics
+    /// If there is no such body.
+    #[must_use]
+    pub(crate) fn solid_of(&self, index: usize) -> Solid {
+        self.vehicles[index].solid(self.material)
+    }
+
     /// Where the first mover is now.
     #[must_use]
     pub fn prey(&self) -> Option<Pose> {

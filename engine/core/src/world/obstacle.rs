@@ -19,6 +19,8 @@ pub(super) struct Obstacle {
     pub(super) area: FloorArea,
     pub(super) bottom_m: f64,
     pub(super) top_m: f64,
+    /// Of a ramp: metres of height for each metre of way; 0 of others, which are level.
+    pub(super) rise: f64,
 }
 
 impl Obstacle {
@@ -31,7 +33,8 @@ impl Obstacle {
             Shape::Cylinder { radius_m, .. } => FloorArea::Circle { radius: radius_m },
         };
         let (bottom_m, top_m) = (solid.centre.z - half.z, solid.centre.z + half.z);
-        Self { x: solid.centre.x, y: solid.centre.y, sin, cos, area, bottom_m, top_m }
+        let rise = if matches!(solid.shape, Shape::Ramp { .. }) { half.z / half.x } else { 0.0 };
+        Self { x: solid.centre.x, y: solid.centre.y, sin, cos, area, bottom_m, top_m, rise }
     }
 
     /// Whether a circle around its middle that holds it comes within `reach_m` of a place.

@@ -191,19 +191,22 @@ impl Terrain {
 struct Wheels {
     half_base: f64,
     half_track: f64,
+    /// How far their middle lies ahead of the body's origin, metres.
+    middle: f64,
     places: [(f64, f64); 4],
 }
 
 impl Wheels {
     fn of(shape: &BodyShape) -> Self {
-        let (x, y) = (0.5 * shape.wheelbase_m, 0.5 * shape.track_m);
-        Self { half_base: x, half_track: y, places: [(x, y), (x, -y), (-x, y), (-x, -y)] }
+        let (x, y, middle) = (0.5 * shape.wheelbase_m, 0.5 * shape.track_m, shape.footprint.ahead_m());
+        let places = [(middle + x, y), (middle + x, -y), (middle - x, y), (middle - x, -y)];
+        Self { half_base: x, half_track: y, middle, places }
     }
 
     /// How far above the ground of its origin a placed body looks for that of its wheels, metres: a slope of 1 at their
     /// distance, rounded up to a centimetre.
     fn placing_m(&self) -> f64 {
-        let (x, y) = (self.half_base, self.half_track);
+        let (x, y) = (self.half_base + self.middle.abs(), self.half_track);
         ((x * x + y * y).sqrt() * 100.0).ceil() / 100.0
     }
 }
@@ -237,7 +240,7 @@ impl Grounds {
     }
 
     fn settle(&self, body: &Stance, drop_m: f64) -> Support {
-        let Wheels { half_base, half_track, places } = self.at;
+        let Wheels { half_base, half_track, middle, places } = self.at;
         let hangs = |wheel: usize| body.plane_m(places[wheel].0, places[wheel].1) - self.wheels[wheel] > drop_m;
         let hanging = (0..4).filter(|&wheel| hangs(wheel)).count();
         let centre_hangs = body.z_m - self.centre > drop_m;
@@ -252,9 +255,10 @@ impl Grounds {
             return Support { stance: *body, hanging, centre_hangs };
         }
         let [front_left, front_right, rear_left, rear_right] = heights;
+        let slope_x = (front_left + front_right - rear_left - rear_right) / (4.0 * half_base);
         let stance = Stance {
-            z_m: 0.25 * (front_left + front_right + rear_left + rear_right),
-            slope_x: (front_left + front_right - rear_left - rear_right) / (4.0 * half_base),
+            z_m: 0.25 * (front_left + front_right + rear_left + rear_right) - slope_x * middle,
+            slope_x,
             slope_y: (front_left + rear_left - front_right - rear_right) / (4.0 * half_track),
             ..*body
         };

@@ -5,12 +5,14 @@ mod bodies;
 use super::*;
 use crate::diagnostic::SourceText;
 use crate::geometry::Point3;
-use crate::settings::{BodyShape, Footprint};
+use crate::settings::{BodyShape, DriveLimits, Footprint};
 use std::f64::consts::FRAC_PI_2;
 
 const PIONEER: BodyShape = BodyShape::pioneer2at();
 const HALF_LENGTH_M: f64 = 0.2485;
-const EXACT: RobotSettings = RobotSettings { body: PIONEER, lag_s: 0.0, speed_noise: 0.0, slip: 0.0, tick_s: 0.05 };
+const DRIVE: DriveLimits = DriveLimits { greatest_m_per_s: 2.0, greatest_rad_per_s: 6.0, bicycle: None };
+const EXACT: RobotSettings =
+    RobotSettings { body: PIONEER, drive: DRIVE, lag_s: 0.0, speed_noise: 0.0, slip: 0.0, tick_s: 0.05 };
 
 /// A round robot of the size of a TurtleBot3 Waffle.
 const ROUND: RobotSettings = RobotSettings {
@@ -18,6 +20,7 @@ const ROUND: RobotSettings = RobotSettings {
         footprint: Footprint::Round { radius_m: 0.22 },
         height_m: 0.2,
         step_m: 0.01,
+        steepest: f64::INFINITY,
         wheelbase_m: 0.2,
         track_m: 0.29,
     },
@@ -145,6 +148,39 @@ fn a_ramp_lifts_the_body_and_its_nose() {
     assert!((across.z_m - 0.2).abs() < 1e-9 && across.pitch_rad.abs() < 1e-9, "{across:?}");
     assert!((across.roll_rad + libm::atan(0.2)).abs() < 1e-9);
     assert!(world.is_safe(0, across.pose) && !world.is_safe(0, Pose::new(2.0, 0.9, 0.0)));
+}
+
+#[test]
+fn a_ramp_that_is_steeper_than_the_body_climbs_is_a_wall_from_below_and_can_be_driven_down() {
+    let ramp = "[[ramp]]\ncentre_m = [2, 0]\nsize_m = [2, 2, 0.4]\n\
+                [[platform]]\ncentre_m = [4, 0]\nsize_m = [2, 2, 0.4]\n[[start]]\nposition_m = [0, 0]\n";
+    // A rise of 0.2 for each metre is 11.3 degrees.
+    let climbs = |slope_deg: f64| {
+        let steepest = libm::tan(slope_deg.to_radians());
+        let body = BodyShape { steepest, ..PIONEER };
+        World::new(layout(ramp), &[RobotSettings { body, ..EXACT }], 0.5, 1)
+    };
+    assert!(!drive(&mut climbs(12.0), 0.4, 0.0, 10).contact);
+    let mut world = climbs(11.0);
+    assert!(drive(&mut world, 0.4, 0.0, 10).contact);
+    assert!((world.body(0).pose.x_m - (1.0 - HALF_LENGTH_M)).abs() < 0.011, "{:?}", world.body(0));
+    world.place(0, Pose::new(3.5, 0.0, 0.0));
+    assert!(!drive(&mut world, -0.4, 0.0, 18).contact && world.body(0).z_m == 0.0);
+}
+
+#[test]
+fn wheels_stand_about_the_middle_of_the_outline() {
+    let ramp = "[[ramp]]\ncentre_m = [2, 0]\nsize_m = [2, 2, 0.4]\n[[start]]\nposition_m = [0, 0]\n";
+    let footprint = Footprint::Rectangle { length_m: 0.5, width_m: 0.3, ahead_m: 0.2 };
+    let body = BodyShape { footprint, wheelbase_m: 0.4, ..PIONEER };
+    let mut world = World::new(layout(ramp), &[RobotSettings { body, ..EXACT }], 0.5, 1);
+    // The wheels are 0 and 0.4 m ahead of the origin: at 0.9 m only the front ones stand on the ramp, 0.06 m up, and the
+    // origin, over the rear ones, is still on the floor.
+    assert!(!drive(&mut world, 0.4, 0.0, 4).contact);
+    drive(&mut world, 0.2, 0.0, 1);
+    let lifted = world.body(0);
+    assert!((lifted.pose.x_m - 0.9).abs() < 1e-9 && lifted.z_m.abs() < 1e-9, "{lifted:?}");
+    assert!((lifted.pitch_rad + libm::atan(0.15)).abs() < 1e-9, "{lifted:?}");
 }
 
 #[test]

@@ -9,6 +9,7 @@ mod finding;
 mod fired;
 mod loops;
 mod model;
+mod mounts;
 mod outcome;
 mod sarif;
 mod scale;
@@ -130,6 +131,7 @@ pub fn read(plan: &Plan) -> Vec<Finding> {
     outcome::check_goals(plan, &mut findings);
     stages::check_stages(plan, &mut findings);
     views::check_views(plan, &mut findings);
+    mounts::check_mounts(plan, &mut findings);
     findings
 }
 

@@ -10,6 +10,7 @@ use super::track::{Moments, ScanShape};
 use crate::lint::{self, Report};
 use engine::diagnostic::Result;
 use engine::experiment::{Plan, WINDOW_STEPS};
+use engine::geometry::Twist;
 use engine::learner::Carry;
 use engine::settings::{SETTINGS, Settings, Value};
 use engine::stats::Sorted;
@@ -42,6 +43,8 @@ pub struct Document {
     pub unit_m: f64,
     /// Half of the robot's length and width, metres.
     pub robot_half_m: [f64; 2],
+    /// The robot's outline in its own axes, metres.
+    pub robot_outline_m: Vec<[f64; 2]>,
     /// Time between two steps, seconds.
     pub period_s: f64,
     /// Steps in a window of the curve.
@@ -148,8 +151,8 @@ impl Document {
         let Settings { run, robot, actions, laser, .. } = &plan.settings;
         let world = Ground::new(plan);
         let far = world.bounds_m.iter().fold(1.0, |far: f64, at| far.max(at.abs()));
-        let beams = laser.beams as usize;
-        let every = beams.saturating_sub(1).div_ceil(MOST_SCAN_BEAMS - 1).max(1);
+        let fan = laser.fan();
+        let every = fan.beams.saturating_sub(1).div_ceil(MOST_SCAN_BEAMS - 1).max(1);
         let (rows, columns) = plan.drawn_grid()?;
         let rules = plan.behaviour.rules().iter().enumerate();
         Ok(Self {
@@ -162,6 +165,7 @@ impl Document {
             unit_m: (2.0 * far / REACH).max(0.001),
             world,
             robot_half_m: robot.body.footprint.half_m(),
+            robot_outline_m: robot.body.footprint.outline_m(),
             period_s: run.period_s,
             window_steps: WINDOW_STEPS,
             planned_steps: plan.learning_steps(),
@@ -169,9 +173,12 @@ impl Document {
             actions: actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
             grid: [rows, columns],
             scan: ScanShape {
-                beams,
+                beams: fan.beams,
+                first_rad: fan.bearing_rad(0),
+                apart_rad: fan.apart_rad(),
+                whole: fan.is_whole(),
                 every,
-                kept: beams.saturating_sub(1) / every + 1,
+                kept: fan.beams.saturating_sub(1) / every + 1,
                 max_range_m: laser.max_range_m,
                 forward_m: laser.forward_m,
                 tilt_rad: laser.tilt_deg.to_radians(),
@@ -246,7 +253,24 @@ fn settings(plan: &Plan) -> Vec<SettingView> {
         };
         SettingView { name: row.name(), value, unit: row.unit, changed }
     });
-    let mut all: Vec<SettingView> = filters.chain(rows).collect();
+    let mut all: Vec<SettingView> = robot(plan).into_iter().chain(filters).chain(rows).collect();
     all.sort_by_key(|setting| !setting.changed);
     all
+}
+
+/// The body that the script names, and the actions if they are not those of every script.
+fn robot(plan: &Plan) -> Vec<SettingView> {
+    let view = |name: &str, value: String, unit| SettingView { name: name.to_owned(), value, unit, changed: true };
+    let body = plan.behaviour.body().and_then(|body| body.path.file_stem());
+    let mut robot: Vec<SettingView> =
+        body.map(|name| view("robot", name.to_string_lossy().into_owned(), "")).into_iter().collect();
+    let actions = &plan.settings.actions;
+    if *actions != Settings::default().actions {
+        let pair = |twist: &Twist| format!("[{}, {}]", twist.linear_m_per_s, twist.angular_rad_per_s);
+        let cut = plan.behaviour.place_of("actions").is_none()
+            && actions.iter().all(|action| Settings::default().actions.contains(action));
+        let unit = if cut { "(m/s, rad/s), those of every script that it can do" } else { "(m/s, rad/s)" };
+        robot.push(view("actions", actions.iter().map(pair).collect::<Vec<_>>().join(" "), unit));
+    }
+    robot
 }

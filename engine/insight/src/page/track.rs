@@ -29,6 +29,12 @@ pub struct Moments {
 pub struct ScanShape {
     /// Beams of the laser.
     pub beams: usize,
+    /// Where beam 0 looks, radians from straight ahead, positive to the left.
+    pub first_rad: f64,
+    /// From one beam to the next, radians.
+    pub apart_rad: f64,
+    /// Whether they go all round.
+    pub whole: bool,
     /// One beam in this many is kept, starting with beam 0.
     pub every: usize,
     /// How many are kept.

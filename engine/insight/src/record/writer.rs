@@ -114,7 +114,7 @@ impl Tape {
         while let Some(step) = playback.advance()? {
             self.step += 1;
             self.robot(&playback);
-            self.scan(&playback);
+            self.scan(plan, &playback);
             self.judged(plan, phase, &playback, &step)?;
             if step.index % image_every == 0 {
                 self.images(&playback)?;
@@ -149,16 +149,16 @@ impl Tape {
         }
     }
 
-    fn scan(&self, playback: &Playback<'_>) {
+    fn scan(&self, plan: &Plan, playback: &Playback<'_>) {
         let (at, timestamp) = self.now();
-        let quarter = std::f64::consts::FRAC_PI_2;
+        let fan = plan.settings.laser.fan();
         let ranges = playback.cycle().observation().scan.ranges_m.iter().map(|range| f64::from(*range)).collect();
         let message = LaserScan {
             timestamp: Some(timestamp),
             frame_id: LASER.to_owned(),
             pose: Some(pose([0.0; 3], 0.0)),
-            start_angle: -quarter,
-            end_angle: quarter,
+            start_angle: fan.bearing_rad(0),
+            end_angle: fan.bearing_rad(fan.beams.saturating_sub(1)),
             ranges,
             intensities: Vec::new(),
         };

@@ -30,6 +30,8 @@ pub struct WorldPlan<'a> {
     pub movers: &'a [Mover],
     /// What a step is on the clock of the movers, seconds.
     pub step_s: f64,
+    /// The outline of the robot, in its own axes, metres; empty if there is none to draw.
+    pub robot_m: Vec<[f64; 2]>,
 }
 
 impl<'a> WorldPlan<'a> {
@@ -43,6 +45,7 @@ impl<'a> WorldPlan<'a> {
             routes: &layout.routes,
             movers: &layout.movers,
             step_s: plan.settings.run.period_s * plan.settings.movers.speed,
+            robot_m: plan.settings.robot.body.footprint.outline_m(),
             ..Self::standing(layout.scene.parts())
         }
     }
@@ -50,7 +53,15 @@ impl<'a> WorldPlan<'a> {
     /// Solids alone, none of them driven on.
     #[must_use]
     pub fn standing(parts: &'a SceneParts) -> Self {
-        Self { parts, driven_on: vec![false; parts.solids.len()], lap: None, routes: &[], movers: &[], step_s: 0.0 }
+        Self {
+            parts,
+            driven_on: vec![false; parts.solids.len()],
+            lap: None,
+            routes: &[],
+            movers: &[],
+            step_s: 0.0,
+            robot_m: Vec::new(),
+        }
     }
 
     /// The ways of the movers that are not the lap.
@@ -106,6 +117,20 @@ impl<'a> WorldPlan<'a> {
         }
     }
 
+    /// Draws the robot's outline where it stands, with a line from the point that it turns about to its front.
+    pub(super) fn draw_robot(&self, sheet: &mut Sheet, plot: &Plot, at: Pose) {
+        if self.robot_m.is_empty() || ![at.x_m, at.y_m, at.yaw_rad].iter().all(|number| number.is_finite()) {
+            return;
+        }
+        let (sin, cos) = libm::sincos(at.yaw_rad);
+        let spot = |x: f64, y: f64| plot.at(at.x_m + cos * x - sin * y, at.y_m + sin * x + cos * y);
+        let corners: Vec<Spot> = self.robot_m.iter().map(|[x, y]| spot(*x, *y)).collect();
+        let front = self.robot_m.iter().fold(0.0, |front: f64, [x, _]| front.max(*x));
+        sheet.area(corners.clone(), PAPER.thin(0.6));
+        sheet.line(closed(corners), 1.0, TEXT);
+        sheet.line(vec![spot(0.0, 0.0), spot(front, 0.0)], 1.0, TEXT);
+    }
+
     /// Draws the movers where they are after so many steps.
     pub(super) fn draw_movers(&self, sheet: &mut Sheet, plot: &Plot, steps: usize) {
         for mover in self.movers {
@@ -142,6 +167,14 @@ fn spots(plot: &Plot, route: &Route) -> Vec<Spot> {
 pub(super) fn lap_sign(sheet: &mut Sheet, from: Spot, to: Spot) {
     let y = (from.1 + to.1) / 2;
     dashed(sheet, &[(from.0, y), (to.0, y)], 1.5, LAP, DASHES);
+}
+
+/// The sign of the robot in a legend.
+pub(super) fn robot_sign(sheet: &mut Sheet, from: Spot, to: Spot) {
+    let (middle, half) = ((from.0 + to.0) / 2, (to.1 - from.1) / 3);
+    let y = (from.1 + to.1) / 2;
+    sheet.border((middle - half, y - half), (middle + half, y + half), TEXT);
+    sheet.line(vec![(middle, y), (middle + half, y)], 1.0, TEXT);
 }
 
 /// The sign of a mover's way in a legend.

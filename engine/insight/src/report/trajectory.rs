@@ -47,6 +47,9 @@ pub fn trajectories(data: &TrajectoryData<'_>) -> Result<Picture> {
         data.world.draw(&mut sheet, &plot);
         data.world.draw_movers(&mut sheet, &plot, path.steps());
         route::draw_path(&mut sheet, &plot, path);
+        if let Some(last) = path.last {
+            data.world.draw_robot(&mut sheet, &plot, last);
+        }
     }
     explain(&mut sheet, data.world);
     sheet.finish(&shows(data.world, data.panels))
@@ -139,6 +142,9 @@ fn explain(sheet: &mut Sheet, world: &WorldPlan<'_>) {
         LegendEntry { sign: &time, words: "way, light early to dark late" },
         LegendEntry { sign: &failure, words: "failure" },
     ];
+    if !world.robot_m.is_empty() {
+        all.push(LegendEntry { sign: &plan::robot_sign, words: "robot at the end" });
+    }
     if world.lap.is_some() {
         let words = if world.lap_is_driven() { "intended lap, driven by the mover too" } else { "intended lap" };
         all.push(LegendEntry { sign: &plan::lap_sign, words });

@@ -44,6 +44,9 @@ struct RunFile {
     settings: Table,
     script: TextEntry,
     world: TextEntry,
+    /// The body that the script names.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    body: Option<TextEntry>,
     /// Of a combination: the policies, in the order of the script.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     policy: Vec<TextEntry>,
@@ -113,6 +116,7 @@ pub fn run_to_toml(plan: &Plan, seed: u64) -> Result<String> {
         settings: settings_table(settings),
         script: TextEntry::new(plan.behaviour.source()),
         world: TextEntry::new(&plan.layout.source),
+        body: plan.behaviour.body().map(TextEntry::new),
         policy: plan.members.iter().map(|member| TextEntry::new(&member.source)).collect(),
         leg: legs.collect(),
     };
@@ -188,13 +192,17 @@ impl StoredRun {
             );
             return Diagnostic::new("E-RUN-FILE", message).fail();
         }
-        // No file says which body yet.
-        let body = Settings::default().robot.body;
-        let layout = Arc::new(Layout::parse(file.world.check(&source)?, &body)?);
+        let body = file.body.as_ref().map(|body| body.check(&source)).transpose()?;
+        let behaviour_of = |script: &TextEntry| {
+            // The run has the file of the one body that its script names.
+            Behaviour::parse_with(&file.behaviour, script.check(&source)?, &|_| Ok(body.clone())).map(Arc::new)
+        };
+        let shape = behaviour_of(&file.script)?.settings().robot.body;
+        let layout = Arc::new(Layout::parse(file.world.check(&source)?, &shape)?);
         let further = file.view.iter().flat_map(|view| &view.filter);
         file.filters.iter().chain(further).try_for_each(|filter| filter.check(&filters))?;
         let plan_of = |script: &TextEntry, table: &Table| {
-            let behaviour = Arc::new(Behaviour::parse(&file.behaviour, script.check(&source)?)?);
+            let behaviour = behaviour_of(script)?;
             let settings = settings(&source, behaviour.settings(), &file, table)?;
             Plan::with_layout(behaviour, settings, Arc::clone(&layout), Arc::clone(&filters))
         };

@@ -151,7 +151,7 @@ fn entry(plan: &Plan, ledger: &Ledger, step: usize) -> Option<StepEntry> {
         ledger.record(step)?;
     let twist = plan.settings.actions.get(usize::from(action))?;
     let name = |rule: usize| plan.behaviour.rules()[rule].name.clone();
-    let beams = plan.settings.laser.beams as usize;
+    let fan = plan.settings.laser.fan();
     Some(StepEntry {
         step,
         state,
@@ -164,7 +164,7 @@ fn entry(plan: &Plan, ledger: &Ledger, step: usize) -> Option<StepEntry> {
         explored,
         contact,
         beam,
-        beam_angle_deg: beam.map(|beam| engine::experiment::beam_angle_deg(usize::from(beam), beams)),
+        beam_angle_deg: beam.map(|beam| fan.bearing_deg(usize::from(beam))),
         nearest_m,
         pose: [pose.x_m, pose.y_m, pose.yaw_rad],
     })

@@ -9,7 +9,8 @@ use super::ink::TerminalInk;
 use super::lines::{heading, nothing, write, write_all};
 use super::view::View;
 use super::words::{fit, motion, side, signed};
-use engine::experiment::{FactReasons, Record, RuleReasons, beam_angle_deg};
+use engine::experiment::{FactReasons, Record, RuleReasons};
+use insight::page::ScanShape;
 use insight::words::{typeset, whole};
 
 /// The largest grid that is drawn cell by cell.
@@ -43,7 +44,7 @@ pub(super) fn draw_step(view: &View, area: Rect, buffer: &mut Buffer) {
 
 fn lines(view: &View, width: usize) -> Vec<Line<'static>> {
     let (Some(record), Some(document)) = (view.record(), view.document()) else { return Vec::new() };
-    let beams = document.scan.beams;
+    let scan = document.scan;
     let entry = |name: &str, words: String| {
         let words = fit(&words, width.saturating_sub(9));
         Line::from(vec![Span::styled(format!("{name:<9}"), TerminalInk::quiet()), Span::raw(words)])
@@ -52,7 +53,7 @@ fn lines(view: &View, width: usize) -> Vec<Line<'static>> {
     let mut lines = vec![
         entry("state", format!("{} → {}", record.state, record.next_state)),
         entry("action", action),
-        entry("nearest", format!("{:.2} m, {}", record.nearest_m, beam(usize::from(record.nearest_beam), beams))),
+        entry("nearest", format!("{:.2} m, {}", record.nearest_m, beam(usize::from(record.nearest_beam), scan))),
         entry("events", events(&record)),
         entry("reward", signed(record.reward)),
     ];
@@ -68,12 +69,8 @@ fn lines(view: &View, width: usize) -> Vec<Line<'static>> {
             Span::styled(fit(&known.name, width.saturating_sub(12).min(30)), style),
             Span::styled(format!("  {words}"), if fired { Style::new() } else { TerminalInk::quiet() }),
         ]));
-        let mut facts: Vec<String> = reasons
-            .iter()
-            .flat_map(|why| &why.parts)
-            .flat_map(|part| &part.facts)
-            .map(|one| fact(one, beams))
-            .collect();
+        let mut facts: Vec<String> =
+            reasons.iter().flat_map(|why| &why.parts).flat_map(|part| &part.facts).map(|one| fact(one, scan)).collect();
         facts.dedup();
         lines.extend(
             facts
@@ -104,19 +101,19 @@ fn said(why: &RuleReasons, fired: bool) -> String {
     }
 }
 
-fn fact(fact: &FactReasons, beams: usize) -> String {
+fn fact(fact: &FactReasons, scan: ScanShape) -> String {
     let value = match fact.unit {
         "metres" => format!("{} m", typeset(fact.value)),
         "share" => format!("{} %", typeset(100.0 * fact.value)),
         "" => (fact.value != 0.0).to_string(),
         unit => format!("{} {unit}", typeset(fact.value)),
     };
-    let by = fact.beam.map_or_else(String::new, |number| format!(" ({})", beam(number, beams)));
+    let by = fact.beam.map_or_else(String::new, |number| format!(" ({})", beam(number, scan)));
     format!("{} = {value}{by}", fact.name)
 }
 
-fn beam(number: usize, beams: usize) -> String {
-    format!("beam {number}, {}", side(beam_angle_deg(number, beams)))
+fn beam(number: usize, scan: ScanShape) -> String {
+    format!("beam {number}, {}", side((scan.first_rad + number as f64 * scan.apart_rad).to_degrees()))
 }
 
 /// The cells of the state that the step came to.

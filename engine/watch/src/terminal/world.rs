@@ -126,7 +126,7 @@ fn laser(view: &View, document: &Document, map: &Map, record: &Record, dots: &mu
     let (sin, cos) = libm::sincos(record.pose.yaw_rad);
     let from = (record.pose.x_m + scan.forward_m * cos, record.pose.y_m + scan.forward_m * sin);
     let end = |beam: usize, range_m: f64| {
-        let angle = record.pose.yaw_rad - PI / 2.0 + beam as f64 * PI / (scan.beams.max(2) - 1) as f64;
+        let angle = record.pose.yaw_rad + scan.first_rad + beam as f64 * scan.apart_rad;
         let (sin, cos) = libm::sincos(angle);
         let reach_m = range_m * libm::cos(scan.tilt_rad);
         map.at((from.0 + reach_m * cos, from.1 + reach_m * sin))
@@ -134,7 +134,8 @@ fn laser(view: &View, document: &Document, map: &Map, record: &Record, dots: &mu
     let start = map.at(from);
     let ranges_m = view.moment().map(|moment| &moment.ranges_m);
     if let Some(ranges_m) = ranges_m {
-        let mut fan = vec![start];
+        // A whole circle has no corner where the laser stands.
+        let mut fan = if scan.whole { Vec::new() } else { vec![start] };
         fan.extend(ranges_m.iter().enumerate().map(|(beam, range_m)| end(beam, f64::from(*range_m))));
         dots.fill(&fan, 2, Rank::Area, view.ink.accent().patch(TerminalInk::quiet()));
     }
@@ -179,13 +180,13 @@ fn robot(view: &View, document: &Document, map: &Map, record: &Record, area: Rec
     let style = if record.contact || record.fallen { view.ink.bad() } else { Style::new() };
     let (sin, cos) = libm::sincos(record.pose.yaw_rad);
     let centre = (record.pose.x_m, record.pose.y_m);
-    let [half, side] = document.robot_half_m;
+    let [half, _] = document.robot_half_m;
     let mut body = Dots::new(area.width, area.height);
     if half * map.scale >= 2.0 {
         let corner = |(along, across): (f64, f64)| {
             map.at((centre.0 + cos * along - sin * across, centre.1 + sin * along + cos * across))
         };
-        let corners = [(half, side), (-half, side), (-half, -side), (half, -side)].map(corner);
+        let corners: Vec<Dot> = document.robot_outline_m.iter().map(|[x, y]| corner((*x, *y))).collect();
         body.fill(&corners, 1, Rank::Front, style);
     }
     body.line(map.at(centre), map.at((centre.0 + NOSE_M * cos, centre.1 + NOSE_M * sin)), None, Rank::Front, style);

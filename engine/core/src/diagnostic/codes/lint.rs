@@ -35,6 +35,13 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
       Use facts.laser.sector(from, to) with .nearest, .farthest, .mean, .count_below(limit) or .excess(expected).",
     ),
     (
+        "W-MOUNT",
+        Kind::Input,
+        "The camera stands inside the body and looks out through its walls, or a sensor stands so far outside of the body that \
+         it passes through walls before the body touches them.\n\
+         No such robot can be built. Mounts are measured from the point that the robot turns about; robots/README.md has outlines.",
+    ),
+    (
         "W-NO-CHOICE",
         Kind::Input,
         "The reward is the same whatever the robot does, so there is nothing to learn.\n\

@@ -145,6 +145,12 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          That is its author's mistake: engine pack build puts the right one in.",
     ),
     (
+        "E-PACK-ROBOT",
+        Kind::Input,
+        "The script of a pack names a robot whose body file the pack does not carry.\n\
+         A stranger's script cannot reach the files on your disk: the author puts robots/NAME.toml into the pack.",
+    ),
+    (
         "E-PACK-STOPPED",
         Kind::Limit,
         "A measurement was stopped before every seed was done.\n\

@@ -42,6 +42,31 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          Add a closed [[route]] with name = \"lap\", or write recovery(\"start\").",
     ),
     (
+        "E-ROBOT-FILE",
+        Kind::Input,
+        "The script names a robot whose body file is not there, or cannot be read.\n\
+         A body is named without its ending: robots/NAME.toml beside the script, or one of those that ship. \
+         robots/README.md lists them.",
+    ),
+    (
+        "E-ROBOT-KEY",
+        Kind::Input,
+        "A table of the body file has a key that does not exist there, or lacks one that it needs.\n\
+         robots/README.md lists the keys of every table.",
+    ),
+    (
+        "E-ROBOT-SYNTAX",
+        Kind::Input,
+        "The body file is not written in TOML, so that nothing in it can be understood.\n\
+         Values stand after '=', text in quotes, lists in [ ]. robots/README.md has a whole file to copy.",
+    ),
+    (
+        "E-ROBOT-VALUE",
+        Kind::Input,
+        "A value of the body file is not what its key may hold, or an action is more than the drive can do.\n\
+         robots/README.md lists what each key may hold; a bicycle turns only while it drives.",
+    ),
+    (
         "E-WORLD-FILE",
         Kind::Input,
         "The world is not there, or its file cannot be read.\n\

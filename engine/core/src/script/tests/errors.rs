@@ -1,11 +1,11 @@
 //! What a script's author is told.
 
-use super::parse;
+use super::{fan, parse};
 use crate::diagnostic::{Diagnostic, Kind};
 use crate::random::{Random, Stream};
 use crate::script::Behaviour;
 
-fn wrong(text: &str) -> Diagnostic {
+pub(super) fn wrong(text: &str) -> Diagnostic {
     *parse(text).map(|_| ()).expect_err(text)
 }
 
@@ -51,7 +51,21 @@ fn a_beam_or_cell_that_does_not_exist_is_found_at_load() {
     expect("const B = 181; rule \"a\" when laser.sector(0, B) < 1.0 => 1;", "E-SCRIPT-FACT", "B", "");
     expect("fn reward(facts) { facts.laser[-1] }", "E-SCRIPT-FACT", "-", "");
     expect("rule \"a\" when camera.cell(3, 0) > 0.5 => 1;", "E-SCRIPT-FACT", "3", "");
-    assert!(parse("rule \"a\" when laser[180] < 1.0 => 1;").unwrap().judge(0.5, 91).is_err());
+    assert!(parse("rule \"a\" when laser[180] < 1.0 => 1;").unwrap().judge(0.5, fan(91)).is_err());
+}
+
+#[test]
+fn a_bearing_that_the_laser_does_not_see_is_found_at_load() {
+    let narrow = |rule: &str| format!("laser(#{{ field_of_view_deg: 120 }}); {rule}");
+    let text = narrow("rule \"a\" when laser.left < 1.0 => 1;");
+    assert_eq!(wrong(&text).message, "the laser sees 60 degrees to either side");
+    expect(&text, "E-SCRIPT-FACT", "left", "write laser(#{ field_of_view_deg: 180 }), or another bearing");
+    let text = narrow("fn reward(facts) { facts.previous.laser.right }");
+    expect(&text, "E-SCRIPT-FACT", "right", "write laser(#{ field_of_view_deg: 180 })");
+    expect("const B = -100; rule \"a\" when laser.at(B) < 1.0 => 1;", "E-SCRIPT-FACT", "B", "field_of_view_deg: 200");
+    expect("fn reward(facts) { facts.laser.between(80, 200).nearest }", "E-SCRIPT-FACT", "200", "from -180 to 180");
+    assert!(parse(&narrow("rule \"a\" when laser.front < laser.at(-60) => 1;")).is_ok());
+    assert!(parse("laser(#{ field_of_view_deg: 360 }); rule \"a\" when laser.at(180) < laser.left => 1;").is_ok());
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use super::super::setup_table::SETUP;
 use super::super::{Behaviour, definitions, reference};
+use super::fan;
 use crate::judge::fact_table::FACTS;
 use crate::judge::functions::FUNCTIONS;
 use crate::judge::{Judgement, ViewFacts};
@@ -90,7 +91,7 @@ fn the_definitions_name_every_fact() {
 #[test]
 fn the_platform_script_sees_an_edge_beside_the_front_beam() {
     let behaviour = Behaviour::load(&scripts().join("platform.rhai")).unwrap();
-    let mut judge = behaviour.judge(0.33, 181).unwrap();
+    let mut judge = behaviour.judge(0.33, fan(181)).unwrap();
     judge.facts_mut().views = vec![ViewFacts { grid: (3, 3), ..ViewFacts::default() }];
     for beam in 0..181_usize {
         let angle = (beam as f64 - 90.0).to_radians();

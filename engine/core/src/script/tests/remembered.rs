@@ -1,7 +1,7 @@
 //! What rules remember: windows, counters, timers, stages; each with numbers worked out by hand.
 
 use super::errors::expect;
-use super::{judge, parse};
+use super::{fan, judge, parse};
 use crate::judge::{Judge, ViewFacts};
 use crate::outcome::Then;
 
@@ -133,7 +133,8 @@ fn a_word_that_a_script_defines_is_its_own() {
         "let measure = 2; rule \"a\" when measure == 2 => 2;",
         "fn odometry(x) { x } rule \"a\" when true => odometry(2.0);",
     ] {
-        let mut judge = parse(script).unwrap_or_else(|wrong| panic!("{script}: {wrong:?}")).judge(0.5, 181).unwrap();
+        let mut judge =
+            parse(script).unwrap_or_else(|wrong| panic!("{script}: {wrong:?}")).judge(0.5, fan(181)).unwrap();
         judge.facts_mut().views = vec![ViewFacts { grid: (3, 3), ..ViewFacts::default() }];
         judge.calibrate().unwrap();
         assert_eq!(judge.judge().unwrap().reward, 2.0, "{script}");

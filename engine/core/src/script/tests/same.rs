@@ -1,7 +1,7 @@
 //! Native rules and interpreted ones give the same.
 
 use super::super::Behaviour;
-use super::parse;
+use super::{fan, parse};
 use crate::judge::rule::{Clause, CompiledRule};
 use crate::judge::{Facts, ViewFacts};
 use crate::random::{Random, Stream};
@@ -135,7 +135,7 @@ fn native_rules_and_interpreted_rules_agree() {
         let native = parse(&format!("{HEAD} rule \"a\" when {flag} => {number};"));
         let interpreted = parse(&format!("{HEAD} rule \"a\" when same({flag}) => same({number});"));
         let (Ok(native), Ok(interpreted)) = (native, interpreted) else { continue };
-        let mut judges = [native.judge(0.5, BEAMS).unwrap(), interpreted.judge(0.5, BEAMS).unwrap()];
+        let mut judges = [native.judge(0.5, fan(BEAMS)).unwrap(), interpreted.judge(0.5, fan(BEAMS)).unwrap()];
         for _ in 0..4 {
             writer.facts(judges[0].facts_mut());
             let facts = judges[0].facts_mut().clone();
@@ -155,7 +155,7 @@ fn native_rules_and_interpreted_rules_agree() {
 fn the_rules_of_the_scripts_are_native() {
     for name in ["wall", "corridor", "platform", "object"] {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../scripts/{name}.rhai"));
-        let judge = Behaviour::load(&path).unwrap().judge(0.5, 181).unwrap();
+        let judge = Behaviour::load(&path).unwrap().judge(0.5, fan(181)).unwrap();
         let native =
             |rule: &CompiledRule| matches!((&rule.condition, &rule.value), (Clause::Native(_), Clause::Native(_)));
         assert!(judge.present().compiled.rules.iter().all(native), "{name}");

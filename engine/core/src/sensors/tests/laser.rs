@@ -7,7 +7,7 @@ use crate::sensors::Laser;
 use crate::sensors::observation::Scan;
 use crate::settings::{LaserSettings, Settings};
 use crate::world::scene::{Scene, Solid};
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 fn settings() -> LaserSettings {
@@ -73,7 +73,9 @@ fn ranges_agree_with_exact_rays() {
         let solids = random_solids(&mut random, 12);
         let pose = random_pose(&mut random);
         let tilt_deg = [0.0, 10.0, 45.0, 90.0, -20.0][round % 5];
-        let settings = LaserSettings { tilt_deg, min_range_m: 0.0, ..settings() };
+        let (beams, field_of_view_deg) =
+            [(181, 180.0), (40, 60.0), (271, 270.0), (360, 360.0), (7, 359.0)][round / 5 % 5];
+        let settings = LaserSettings { beams, field_of_view_deg, tilt_deg, min_range_m: 0.0, ..settings() };
         let origin = (pose * nalgebra::Point3::new(0.0, 0.0, settings.height_m)).coords;
         if !is_free(&solids, &origin) {
             continue;
@@ -82,7 +84,7 @@ fn ranges_agree_with_exact_rays() {
         let (sin, cos) = libm::sincos(tilt_deg.to_radians());
         let (ahead, left) = (pose * Vector3::new(cos, 0.0, -sin), pose * Vector3::y());
         for (beam, range) in ranges.iter().enumerate() {
-            let angle = PI * beam as f64 / 180.0 - FRAC_PI_2;
+            let angle = settings.fan().bearing_rad(beam);
             let ray = ahead * libm::cos(angle) + left * libm::sin(angle);
             let mut exact = if ray.z < 0.0 { -origin.z / ray.z } else { f64::INFINITY };
             for solid in &solids {
@@ -94,6 +96,17 @@ fn ranges_agree_with_exact_rays() {
         }
     }
     assert!(seen > 20_000, "{seen}");
+}
+
+#[test]
+fn a_laser_that_looks_all_round_sees_the_wall_behind() {
+    let walls = vec![box_at([-2.1, 0.0, 0.5], [0.1, 9.0, 0.5], 1), box_at([0.0, 3.1, 0.5], [9.0, 0.1, 0.5], 1)];
+    let settings = LaserSettings { beams: 360, field_of_view_deg: 360.0, ..settings() };
+    let ranges = scan(scene(walls, 2), &settings, &Isometry3::identity(), &[]);
+    assert_eq!(ranges.len(), 360);
+    assert!(is_close(ranges[0], 2.0) && is_close(ranges[270], 3.0));
+    assert!(is_close(ranges[30], 2.0 / libm::cos(PI / 6.0)));
+    assert_eq!((ranges[90], ranges[180]), (8.192, 8.192));
 }
 
 #[test]

@@ -124,8 +124,8 @@ function motion([linear, angular]) {
   return `${short(linear)} m/s, ${turn}`;
 }
 
-function beamWords(beam, beams) {
-  const angle = (180 * beam) / (beams - 1) - 90;
+function beamWords(beam, scan) {
+  const angle = ((scan.first_rad + beam * scan.apart_rad) * 180) / Math.PI;
   const side = Math.abs(angle) < 0.5 ? 'straight ahead' : `${Math.abs(angle).toFixed(0)}° ${angle > 0 ? 'left' : 'right'}`;
   return `beam ${beam}, ${side}`;
 }

@@ -128,16 +128,17 @@ class WorldMap {
   }
 
   fan(pen, doc, track, index, pose) {
-    const { kept, every, beams, max_range_m: most, forward_m: forward, tilt_rad: tilt } = doc.scan;
+    const { kept, every, first_rad: first, apart_rad: apart, whole, max_range_m: most, forward_m: forward, tilt_rad: tilt } = doc.scan;
     const from = [pose.x + forward * Math.cos(pose.yaw), pose.y + forward * Math.sin(pose.yaw)];
     const end = (beam, range) => {
-      const angle = pose.yaw - Math.PI / 2 + (beam * Math.PI) / (beams - 1);
+      const angle = pose.yaw + first + beam * apart;
       const reach = range * Math.cos(tilt);
       return [this.view.x(from[0] + reach * Math.cos(angle)), this.view.y(from[1] + reach * Math.sin(angle))];
     };
     if ((index + 1) * kept <= track.scan.length) {
       pen.beginPath();
-      pen.moveTo(this.view.x(from[0]), this.view.y(from[1]));
+      // A whole circle has no corner where the laser stands.
+      if (!whole) pen.moveTo(this.view.x(from[0]), this.view.y(from[1]));
       for (let beam = 0; beam < kept; beam += 1) pen.lineTo(...end(beam * every, (track.scan[index * kept + beam] / 255) * most));
       pen.closePath();
       pen.globalAlpha = 0.13;
@@ -164,7 +165,11 @@ class WorldMap {
     const grow = Math.max(1, 6 / half);
     pen.scale(grow, grow);
     pen.fillStyle = flags & (CONTACT | FALLEN) ? ink.bad : ink.text;
-    pen.fillRect(-half, -side, 2 * half, 2 * side);
+    const outline = doc.robot_outline_m.map((at) => at.map((metres) => metres * this.view.scale));
+    pen.beginPath();
+    for (const [x, y] of outline) pen.lineTo(x, -y);
+    pen.fill();
+    pen.translate(Math.max(...outline.map(([x]) => x)) - half, 0);
     pen.fillStyle = ink.paper;
     pen.beginPath();
     pen.moveTo(half * 0.75, 0);

@@ -12,7 +12,7 @@ function showStep(doc, track, index, step) {
     ['state', `${track.state[index]} → ${track.nextState[index]}`],
     ['action', motion(doc.actions[track.action[index]] ?? [0, 0])],
     ['reward', signed(track.reward[index])],
-    ['nearest', `${(track.nearest[index] / 1000).toFixed(2)} m, ${beamWords(track.nearestBeam[index], doc.scan.beams)}`],
+    ['nearest', `${(track.nearest[index] / 1000).toFixed(2)} m, ${beamWords(track.nearestBeam[index], doc.scan)}`],
     ['events', events || 'none'],
   ];
   const box = $('step');
@@ -27,7 +27,7 @@ function factWords(fact, doc) {
   const value = fact.unit === 'metres' ? `${short(fact.value)} m`
     : fact.unit === '' ? (fact.value ? 'true' : 'false')
       : fact.unit === 'share' ? `${short(100 * fact.value)} %` : `${short(fact.value)} ${fact.unit}`;
-  return `${fact.name} = ${value}${fact.beam === null ? '' : ` (${beamWords(fact.beam, doc.scan.beams)})`}`;
+  return `${fact.name} = ${value}${fact.beam === null ? '' : ` (${beamWords(fact.beam, doc.scan)})`}`;
 }
 
 /** What a rule added in a step: its value, or what the others leave of the reward; null where two such rules fired. */
@@ -88,7 +88,7 @@ function showCauses(doc, seed, track, phase, window_, jump, light_) {
   }
   $('causes').replaceChildren(el('ul', {}, ...spoke.map((cause) => {
     const beams = [...cause.beams].sort((a, b) => b[1] - a[1]).slice(0, 3)
-      .map(([beam, count]) => `${beamWords(beam, doc.scan.beams)}${count > 1 ? ` (${count} ×)` : ''}`).join('; ');
+      .map(([beam, count]) => `${beamWords(beam, doc.scan)}${count > 1 ? ` (${count} ×)` : ''}`).join('; ');
     return el('li', { onpointerenter: () => light_(cause.at), onpointerleave: () => light_(null) },
       chip(cause.at), el('b', { text: cause.rule.name }),
       ` ${whole(cause.count)} ×, ${cause.total === null ? 'sum not kept' : signed(cause.total)}, first at `,
