@@ -1,7 +1,9 @@
 //! What a script's settings are made into, each part checked by itself: chain, grid, judge, mirror.
 
+use std::ops::Range;
+
 use super::combination;
-use crate::diagnostic::{Diagnostic, Mistakes, Result};
+use crate::diagnostic::{Diagnostic, Mistakes, Result, printable};
 use crate::filter::{Catalogue, Chain, ChainError};
 use crate::geometry::Twist;
 use crate::judge::Judge;
@@ -56,7 +58,33 @@ impl Parts<'_> {
     fn in_chain(&self, error: ChainError) -> Box<Diagnostic> {
         let stage = format!("filter:{}", error.stage);
         let place = error.parameter.map_or(stage.clone(), |parameter| format!("{stage}.{parameter}"));
-        self.point(*error.error, &place, "here", None)
+        match error.within {
+            Some(within) => self.in_condition(*error.error, error.stage, &place, within),
+            None => self.point(*error.error, &place, "here", None),
+        }
+    }
+
+    /// A mistake within a condition: at its place if the script has the condition as it stands, else with the words about it.
+    fn in_condition(
+        &self,
+        error: Diagnostic,
+        stage: usize,
+        place: &str,
+        (within, label): (Range<usize>, &str),
+    ) -> Box<Diagnostic> {
+        let source = self.behaviour.source();
+        let condition = self.settings.filters.get(stage).and_then(|filter| filter.condition.as_deref()).unwrap_or("");
+        let literal = self.behaviour.place_of(place).map_or(0, |span| span.start + 1);
+        if source.text.get(literal..).is_some_and(|text| !condition.is_empty() && text.starts_with(condition)) {
+            return Box::new(error.at(source, literal + within.start..literal + within.end, label));
+        }
+        let (before, after) = (&condition[..within.start], &condition[within.start..]);
+        let after = if after.is_empty() { "its end".to_owned() } else { format!("'{}'", printable(after)) };
+        let message = match before.is_empty() {
+            true => format!("{}: at {after}", error.message),
+            false => format!("{}: behind '{}' at {after}", error.message, printable(before)),
+        };
+        self.point(Diagnostic { message, ..error }, place, "in this condition", None)
     }
 
     /// A fresh grid.

@@ -12,7 +12,7 @@ use crate::learner::{Mirror, Task};
 use crate::random::{Random, Stream};
 use crate::robot::SimulatedRobot;
 use crate::script::{Behaviour, Draft, Measurable, Unread};
-use crate::settings::{SETTINGS, Settings, Value, apply};
+use crate::settings::{CONDITION, SETTINGS, Settings, Value, apply};
 use crate::state::{Grid, StateMap};
 use crate::verdict::Success;
 use crate::world::{FloorSquares, Layout};
@@ -299,13 +299,18 @@ fn set_filter(settings: &mut Settings, key: &str, value: &Value) -> Result<()> {
     let stage = key.split_once('.').and_then(|(name, parameter)| {
         Some((settings.filters.iter_mut().find(|filter| filter.name == name)?, parameter))
     });
-    let (Some((filter, parameter)), Value::Number(number)) = (stage, value) else {
-        let message = format!("'filter.{}' is not a number of one of the behaviour's filters", printable(key));
-        let help = format!("write filter.NAME.PARAMETER=NUMBER; the filters are: {}", names.join(", "));
-        return Diagnostic::new("E-SET", message).help(help).fail();
-    };
-    filter.parameters.retain(|(name, _)| name != parameter);
-    filter.parameters.push((parameter.to_owned(), *number));
+    match (stage, value) {
+        (Some((filter, CONDITION)), Value::Text(condition)) => filter.condition = Some(condition.clone()),
+        (Some((filter, parameter)), Value::Number(number)) => {
+            filter.parameters.retain(|(name, _)| name != parameter);
+            filter.parameters.push((parameter.to_owned(), *number));
+        }
+        _ => {
+            let message = format!("'filter.{}' is not a number of one of the behaviour's filters", printable(key));
+            let help = format!("write filter.NAME.PARAMETER=NUMBER; the filters are: {}", names.join(", "));
+            return Diagnostic::new("E-SET", message).help(help).fail();
+        }
+    }
     Ok(())
 }
 

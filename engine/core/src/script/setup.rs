@@ -7,7 +7,7 @@ use crate::diagnostic::{Diagnostic, Mistakes, Result, printable};
 use crate::geometry::Twist;
 use crate::judge::explain;
 use crate::judge::views::number;
-use crate::settings::{self, FilterSettings, PolicySettings, Settings, Value};
+use crate::settings::{self, CONDITION, FilterSettings, PolicySettings, Settings, Value};
 use rhai::{AST, ASTNode, Dynamic, Engine, Expr, FnCallExpr, Map, NativeCallContext, Position, Stmt};
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
@@ -260,10 +260,13 @@ impl SetupReader<'_> {
     }
 
     fn filter(&mut self, name: Dynamic, parameters: Option<Dynamic>, form: &str) -> Result<()> {
-        let mut filter = FilterSettings { name: self.word(name, form)?, parameters: Vec::new() };
+        let mut filter = FilterSettings::new(&self.word(name, form)?);
         let stage = format!("filter:{}", self.settings.filters.len());
         self.mark(stage.clone(), self.call)?;
-        let parameters = parameters.unwrap_or_else(|| Map::new().into());
+        let mut parameters = parameters.unwrap_or_else(|| Map::new().into());
+        if parameters.is_string() {
+            parameters = Map::from([(CONDITION.into(), parameters)]).into();
+        }
         let Some(parameters) = parameters.try_cast::<Map>() else {
             return self.wrong(
                 self.call,
@@ -274,6 +277,11 @@ impl SetupReader<'_> {
         };
         for (key, value) in parameters {
             let (_, position) = self.entry(&key);
+            if let (CONDITION, Ok(condition)) = (key.as_str(), value.clone().into_immutable_string()) {
+                filter.condition = Some(condition.to_string());
+                self.mark(format!("{stage}.{key}"), position)?;
+                continue;
+            }
             let switch = value.as_bool().ok().map(|on| f64::from(u8::from(on)));
             match number(&value).or(switch).filter(|number| number.is_finite()) {
                 Some(number) => filter.parameters.push((key.to_string(), number)),
@@ -352,11 +360,14 @@ fn entries(ast: &AST) -> Entries {
         if let Some(ASTNode::Stmt(Stmt::FnCall(call, at)) | ASTNode::Expr(Expr::FnCall(call, at))) = path.last()
             && is_setup(call)
         {
+            if let ("filter", [_, condition]) = (call.name.as_str(), call.args.as_slice()) {
+                entries.insert((*at, CONDITION.to_owned()), (condition.start_position(), condition.start_position()));
+            }
             for argument in &call.args {
                 let Expr::Map(map, _) = argument else { continue };
                 for (ident, value) in &map.0 {
                     let place = (ident.pos, value.start_position());
-                    entries.entry((*at, ident.name.to_string())).or_insert(place);
+                    entries.insert((*at, ident.name.to_string()), place);
                 }
             }
         }

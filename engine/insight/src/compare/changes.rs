@@ -85,7 +85,7 @@ fn actions(settings: &Settings) -> String {
 
 fn filters(settings: &Settings) -> String {
     let filter = |filter: &engine::settings::FilterSettings| {
-        let parameters = filter.parameters.iter().map(|(name, value)| format!(" {name} {value}")).collect::<String>();
+        let parameters = filter.shown().iter().map(|shown| format!(" {shown}")).collect::<String>();
         format!("{}{parameters}", filter.name)
     };
     settings.filters.iter().map(filter).collect::<Vec<_>>().join(", ")

@@ -227,7 +227,7 @@ fn bytes_of_next(bytes: usize, document: &Document) -> usize {
 fn settings(plan: &Plan) -> Vec<SettingView> {
     let defaults = Settings::default();
     let filters = plan.settings.filters.iter().map(|filter| {
-        let parameters: Vec<String> = filter.parameters.iter().map(|(name, value)| format!("{name} {value}")).collect();
+        let parameters = filter.shown();
         SettingView {
             name: format!("filter.{}", filter.name),
             value: if parameters.is_empty() { "as it is".to_owned() } else { parameters.join(", ") },

@@ -171,8 +171,8 @@ fn met(run: &Path, plan: &Sight) -> Result<Policy> {
     unfit(message, "its states mean something else; give its own script, and --set as it was learned with")
 }
 
-/// Every filter with the value of each of its parameters, given or not.
-fn eyes<'a>(settings: &'a Settings, filters: &Catalogue) -> Vec<(&'a str, Vec<f64>)> {
+/// Every filter with its condition and the value of each of its parameters, given or not.
+fn eyes<'a>(settings: &'a Settings, filters: &Catalogue) -> Vec<(&'a str, Option<&'a str>, Vec<f64>)> {
     let value = |given: &[(String, f64)], name: &str, default: f64| {
         given.iter().find(|(key, _)| key == name).map_or(default, |(_, value)| *value)
     };
@@ -181,9 +181,12 @@ fn eyes<'a>(settings: &'a Settings, filters: &Catalogue) -> Vec<(&'a str, Vec<f6
         parameters.iter().map(|parameter| value(given, parameter.name, parameter.default)).collect()
     };
     if settings.filters.is_empty() {
-        return vec![("sobel", values("sobel", &[]))];
+        return vec![("sobel", None, values("sobel", &[]))];
     }
-    settings.filters.iter().map(|filter| (filter.name.as_str(), values(&filter.name, &filter.parameters))).collect()
+    let filters = settings.filters.iter();
+    filters
+        .map(|filter| (filter.name.as_str(), filter.condition.as_deref(), values(&filter.name, &filter.parameters)))
+        .collect()
 }
 
 fn visits(policy: &Policy, state: usize) -> u64 {
