@@ -140,7 +140,9 @@ impl Parts<'_> {
 
     /// A fresh judge.
     pub(super) fn judge(&self) -> Result<Judge> {
-        self.behaviour.judge(self.settings.run.period_s, self.settings.laser.beams as usize)
+        let (run, laser, actions) = (&self.settings.run, &self.settings.laser, &self.settings.actions);
+        self.behaviour.check_guards(actions)?;
+        Ok(self.behaviour.judge(run.period_s, laser.beams as usize)?.with_actions(actions))
     }
 
     fn point(&self, error: Diagnostic, place: &str, label: &str, help: Option<String>) -> Box<Diagnostic> {

@@ -11,7 +11,7 @@ use crate::judge::Judge;
 use crate::learner::{Mirror, Task};
 use crate::random::{Random, Stream};
 use crate::robot::SimulatedRobot;
-use crate::script::{Behaviour, Draft, Measurable, Unread};
+use crate::script::{Behaviour, Draft, Measurable, Param, ParamValues, Unread, no_param};
 use crate::settings::{CONDITION, SETTINGS, Settings, Value, apply};
 use crate::state::{Grid, StateMap};
 use crate::verdict::Success;
@@ -61,6 +61,7 @@ impl Plan {
     /// # Errors
     /// As [`Plan::new`].
     pub fn with_filters(behaviour: Arc<Behaviour>, overrides: &Overrides, filters: Arc<Catalogue>) -> Result<Self> {
+        let behaviour = with_params(behaviour, overrides)?;
         let mistakes = Mistakes::new(behaviour.source());
         Self::resolve(behaviour, &Unread::default(), mistakes, overrides, filters)
     }
@@ -74,7 +75,7 @@ impl Plan {
         overrides: &Overrides,
         filters: impl FnOnce() -> Result<Arc<Catalogue>>,
     ) -> Result<Self> {
-        let Draft { behaviour, mistakes, unread } = Draft::load(script)?;
+        let Draft { behaviour, mistakes, unread } = Draft::load(script, &overrides.params())?;
         match filters() {
             Ok(filters) => Self::resolve(Arc::new(behaviour), &unread, mistakes, overrides, filters),
             Err(error) => Err(mistakes.ended_by(*error)),
@@ -88,7 +89,7 @@ impl Plan {
         overrides: &Overrides,
         filters: Arc<Catalogue>,
     ) -> Result<Self> {
-        let settings = match changed(behaviour.settings(), overrides) {
+        let settings = match changed(behaviour.settings(), behaviour.params(), overrides) {
             Ok(settings) => settings,
             // It may be about something that the script could not say.
             Err(error) => return mistakes.end().and(Err(error)),
@@ -108,12 +109,15 @@ impl Plan {
     /// # Errors
     /// As [`Plan::new`].
     pub fn with_changes(self, overrides: &Overrides) -> Result<Self> {
-        let settings = changed(&self.settings, overrides)?;
-        let layout = match &overrides.world {
-            Some(world) => Arc::new(Layout::load(&find_world(&self.behaviour, world, None)?, &settings.robot.body)?),
-            None => self.layout,
+        let behaviour = with_params(Arc::clone(&self.behaviour), overrides)?;
+        let followed = self.settings.clone().following(self.behaviour.settings(), behaviour.settings());
+        let settings = changed(&followed, behaviour.params(), overrides)?;
+        let layout = if overrides.world.is_some() || settings.world != self.settings.world {
+            Arc::new(Layout::load(&find_world(&behaviour, &settings.world, None)?, &settings.robot.body)?)
+        } else {
+            self.layout
         };
-        let plan = Self::with_layout(self.behaviour, settings, layout, self.filters)?;
+        let plan = Self::with_layout(behaviour, settings, layout, self.filters)?;
         Ok(plan.with_members(self.members).after(self.earlier))
     }
 
@@ -250,10 +254,28 @@ impl Plan {
     }
 }
 
-pub(super) fn changed(settings: &Settings, overrides: &Overrides) -> Result<Settings> {
+impl Overrides {
+    /// The numbers that it sets and that are no setting: parameters of the script, if it has them.
+    pub(super) fn params(&self) -> ParamValues {
+        let pairs = self.set.iter().filter_map(|pair| pair.split_once('='));
+        let named = pairs.filter(|(name, _)| !name.contains('.'));
+        named.filter_map(|(name, text)| Some((name.trim().to_owned(), text.trim().parse().ok()?))).collect()
+    }
+}
+
+/// A script with the parameters that the command line sets; those that it does not have are told by [`changed`].
+pub(super) fn with_params(behaviour: Arc<Behaviour>, overrides: &Overrides) -> Result<Arc<Behaviour>> {
+    let mut values = overrides.params();
+    values.retain(|name, value| {
+        behaviour.params().iter().any(|param| param.name == *name && param.check(*value).is_ok())
+    });
+    if values.is_empty() { Ok(behaviour) } else { behaviour.with_values(&values).map(Arc::new) }
+}
+
+pub(super) fn changed(settings: &Settings, params: &[Param], overrides: &Overrides) -> Result<Settings> {
     let mut settings = settings.clone();
     for pair in &overrides.set {
-        set(&mut settings, pair)?;
+        set(&mut settings, params, pair)?;
     }
     if let Some(steps) = overrides.steps {
         settings.run.steps = steps;
@@ -268,16 +290,22 @@ pub(super) fn changed(settings: &Settings, overrides: &Overrides) -> Result<Sett
 }
 
 /// Carries out one `--set KEY=VALUE`.
-fn set(settings: &mut Settings, pair: &str) -> Result<()> {
+fn set(settings: &mut Settings, params: &[Param], pair: &str) -> Result<()> {
     let wrong = |message: String, help: String| Diagnostic::new("E-SET", message).help(help).fail();
     let Some((name, text)) = pair.split_once('=') else {
         let message = format!("'{}' is not KEY=VALUE", printable(pair));
         return wrong(message, "write for example: --set camera.tilt_deg=40".to_owned());
     };
     let Some((group, key)) = name.trim().split_once('.') else {
+        if let Some(param) = params.iter().find(|param| param.name == name.trim()) {
+            return param.check(text.trim().parse().unwrap_or(f64::NAN));
+        }
         let keys: Vec<_> = SETTINGS.iter().map(|row| row.name()).collect();
         let suffix = format!(".{}", name.trim());
         let near = keys.iter().find(|key| key.ends_with(&suffix)).map(String::as_str);
+        if near.is_none() && !params.is_empty() {
+            return no_param(params, name.trim()).fail();
+        }
         let near = near.or_else(|| nearest_name(name, keys.iter().map(String::as_str))).unwrap_or("camera.tilt_deg");
         return wrong(format!("there is no setting '{}'", printable(name)), format!("did you mean '{near}'?"));
     };

@@ -1,6 +1,7 @@
 //! What judging needs of a script.
 
 use super::explain;
+use super::guards::CompiledGuard;
 use super::memory::Remembered;
 use super::needs::Needs;
 use super::readings::Part;
@@ -19,6 +20,8 @@ pub(crate) struct CompiledScript {
     pub ast: AST,
     pub constants: Scope<'static>,
     pub rules: Vec<CompiledRule>,
+    /// What an action must never do.
+    pub guards: Vec<CompiledGuard>,
     pub needs: Needs,
     /// What is worked out before the rules, in its order.
     pub remembered: Vec<Remembered>,
@@ -41,7 +44,9 @@ pub(crate) struct CompiledScript {
 impl CompiledScript {
     /// Whether anything of it outlasts a step, besides how long conditions have held.
     pub(crate) fn remembers(&self) -> bool {
-        self.looks_back || self.counts_way || !self.remembered.is_empty() || !self.stages.is_empty()
+        // A guard must know the facts of a robot that was just put somewhere.
+        let has_guards = !self.guards.is_empty();
+        has_guards || self.looks_back || self.counts_way || !self.remembered.is_empty() || !self.stages.is_empty()
     }
 
     /// Checks that every beam that is named exists.

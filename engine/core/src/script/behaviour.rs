@@ -1,8 +1,11 @@
 //! A script, loaded and checked.
 
+use super::guards;
 use super::outline::ScriptOutline;
+use super::params::{Param, ParamValues};
 use super::setup::SettingPlaces;
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, nearest_name, printable};
+use crate::geometry::Twist;
 use crate::judge::compiled::CompiledScript;
 use crate::judge::memory::Remembered;
 use crate::judge::rule::CompiledRule;
@@ -35,6 +38,7 @@ pub struct Behaviour {
     compiled: Arc<CompiledScript>,
     success: Vec<SuccessCondition>,
     endable: Endable,
+    params: Vec<Param>,
 }
 
 impl Behaviour {
@@ -55,11 +59,37 @@ impl Behaviour {
         let stages = !compiled.stages.is_empty();
         let endable = Endable { stages, ..endable(&compiled.rules, outline.reward_recovers) };
         let compiled = Arc::new(compiled);
-        Self { name: name.to_owned(), settings, places, rules, outline, compiled, success: Vec::new(), endable }
+        Self {
+            name: name.to_owned(),
+            settings,
+            places,
+            rules,
+            outline,
+            compiled,
+            success: Vec::new(),
+            endable,
+            params: Vec::new(),
+        }
     }
 
     pub(super) fn with_success(self, success: Vec<SuccessCondition>) -> Self {
         Self { success, ..self }
+    }
+
+    pub(super) fn with_params(self, params: Vec<Param>) -> Self {
+        Self { params, ..self }
+    }
+
+    /// The numbers that may be set from outside, in their order.
+    #[must_use]
+    pub fn params(&self) -> &[Param] {
+        &self.params
+    }
+
+    /// The value of each of them.
+    #[must_use]
+    pub fn param_values(&self) -> ParamValues {
+        self.params.iter().map(|param| (param.name.clone(), param.value)).collect()
     }
 
     /// What is called success in a world with a lap route or without one, in a test that takes so many seconds.
@@ -169,6 +199,19 @@ impl Behaviour {
     pub(crate) fn judge(&self, period_s: f64, beams: usize) -> Result<Judge> {
         self.compiled.check_beams(beams)?;
         Ok(self.unchecked_judge(period_s, beams))
+    }
+
+    /// Checks that each guard takes some of these actions away, and leaves some.
+    ///
+    /// # Errors
+    /// For the first that does not.
+    pub(crate) fn check_guards(&self, actions: &[Twist]) -> Result<()> {
+        guards::check_actions(self.source(), &self.compiled.guards, actions)
+    }
+
+    /// The guards in their order.
+    pub fn guards(&self) -> impl Iterator<Item = &RuleText> {
+        self.compiled.guards.iter().map(|guard| &guard.text)
     }
 
     /// A judge for rules that may name beams that the laser does not have: these must not be judged.

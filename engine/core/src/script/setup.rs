@@ -40,7 +40,8 @@ impl Log {
     /// A log that is written until it is closed, and the calls that write it.
     pub(super) fn register(engine: &mut Engine) -> Self {
         let log = Self(Arc::new(Mutex::new((true, Vec::new()))));
-        for row in SETUP {
+        // A parameter is a value, not a setting.
+        for row in SETUP.iter().filter(|row| row.name != "param") {
             let name = row.name;
             let one = log.clone();
             engine.register_fn(name, move |c: NativeCallContext| one.write(name, c.call_position(), vec![]));

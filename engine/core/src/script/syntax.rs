@@ -1,12 +1,14 @@
-//! The forms that the language adds to Rhai: rules, conditions of success, measures.
+//! The forms that the language adds to Rhai: rules, conditions of success, measures, guards.
 //!
 //! ```text
 //! rule "name" [in "stage", ...] when CONDITION [for N steps | for N seconds] [once] => VALUE [per second]
 //!             [then recover | fail | goal | restart | stage "name"];
 //! success "name" when CONDITION;
 //! measure name = EXPRESSION;
+//! forbid "name" when CONDITION => CONDITION OF THE ACTION;
 //! ```
 
+use super::guards::next_of_forbid;
 use super::source::Code;
 use crate::outcome::Then;
 use rhai::{CustomExpr, Dynamic, Engine, Expr, ImmutableString, LexError, ParseError, Position, Stmt};
@@ -63,6 +65,7 @@ pub(super) struct WrittenMeasure<'a> {
 pub(super) struct Forms {
     pub success: bool,
     pub measure: bool,
+    pub forbid: bool,
 }
 
 impl Forms {
@@ -75,6 +78,7 @@ impl Forms {
         Self {
             success: begins_a_statement(code, "success", |tail| tail.starts_with('"')),
             measure: begins_a_statement(code, "measure", named),
+            forbid: begins_a_statement(code, "forbid", |tail| tail.starts_with('"')),
         }
     }
 }
@@ -98,15 +102,18 @@ pub(super) fn register(engine: &mut Engine, forms: Forms) {
     if forms.measure {
         engine.register_custom_syntax_with_state_raw("measure", next_of_measure, false, |_, _, _| Ok(Dynamic::UNIT));
     }
+    if forms.forbid {
+        engine.register_custom_syntax_with_state_raw("forbid", next_of_forbid, false, |_, _, _| Ok(Dynamic::UNIT));
+    }
 }
 
-type Next = Result<Option<ImmutableString>, ParseError>;
+pub(super) type Next = Result<Option<ImmutableString>, ParseError>;
 
-fn expect(word: &str, ahead: &str, message: &str) -> Next {
+pub(super) fn expect(word: &str, ahead: &str, message: &str) -> Next {
     if ahead == word { Ok(Some(word.into())) } else { wrong(message) }
 }
 
-fn wrong(message: &str) -> Next {
+pub(super) fn wrong(message: &str) -> Next {
     Err(LexError::ImproperSymbol(OURS.to_owned(), message.to_owned()).into_err(Position::NONE))
 }
 
@@ -219,7 +226,7 @@ fn next_of_measure(symbols: &[ImmutableString], ahead: &str, _: &mut Dynamic) ->
     }
 }
 
-fn is_form_of(expr: &Expr, word: &str) -> bool {
+pub(super) fn is_form_of(expr: &Expr, word: &str) -> bool {
     matches!(expr, Expr::Custom(custom, _) if custom.tokens.first().is_some_and(|first| first == word))
 }
 
@@ -239,7 +246,7 @@ pub(super) fn is_measure_expr(expr: &Expr) -> bool {
 }
 
 /// The form that a statement is.
-fn form(statement: &Stmt) -> Option<(&Expr, &CustomExpr, Position)> {
+pub(super) fn form(statement: &Stmt) -> Option<(&Expr, &CustomExpr, Position)> {
     let Stmt::Expr(expr) = statement else { return None };
     let Expr::Custom(custom, position) = &**expr else { return None };
     Some((expr, custom, *position))

@@ -11,6 +11,7 @@ use crate::lint::{self, Report};
 use engine::diagnostic::Result;
 use engine::experiment::{Plan, WINDOW_STEPS};
 use engine::learner::Carry;
+use engine::script::Param;
 use engine::settings::{SETTINGS, Settings, Value};
 use engine::stats::Sorted;
 
@@ -60,6 +61,9 @@ pub struct Document {
     pub rules: Vec<RuleView>,
     /// The settings that differ from their defaults first, then the others.
     pub settings: Vec<SettingView>,
+    /// The script's parameters.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub params: Vec<ParamView>,
     /// The seeds.
     pub seeds: Vec<SeedView>,
     /// Moments with their pictures.
@@ -103,6 +107,28 @@ pub struct SettingView {
     pub unit: &'static str,
     /// Whether it differs from the default.
     pub changed: bool,
+}
+
+/// One parameter of the script.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ParamView {
+    /// Its name.
+    pub name: String,
+    /// What it is in this run.
+    pub value: f64,
+    /// The least value.
+    pub low: f64,
+    /// The greatest value.
+    pub high: f64,
+    /// Whether it is a whole number.
+    pub whole: bool,
+}
+
+impl From<&Param> for ParamView {
+    fn from(param: &Param) -> Self {
+        let Param { name, value, low, high, whole, .. } = param;
+        Self { name: name.clone(), value: *value, low: *low, high: *high, whole: *whole }
+    }
 }
 
 impl Document {
@@ -185,6 +211,7 @@ impl Document {
                 })
                 .collect(),
             settings: settings(plan),
+            params: plan.behaviour.params().iter().map(ParamView::from).collect(),
             seeds: Vec::new(),
             shots: Vec::new(),
             findings: lint::read(plan).iter().map(FindingView::from).collect(),
@@ -226,6 +253,12 @@ fn bytes_of_next(bytes: usize, document: &Document) -> usize {
 
 fn settings(plan: &Plan) -> Vec<SettingView> {
     let defaults = Settings::default();
+    let params = plan.behaviour.params().iter().map(|param| SettingView {
+        name: param.name.clone(),
+        value: param.shown(),
+        unit: "",
+        changed: true,
+    });
     let filters = plan.settings.filters.iter().map(|filter| {
         let parameters = filter.shown();
         SettingView {
@@ -245,7 +278,7 @@ fn settings(plan: &Plan) -> Vec<SettingView> {
         };
         SettingView { name: row.name(), value, unit: row.unit, changed }
     });
-    let mut all: Vec<SettingView> = filters.chain(rows).collect();
+    let mut all: Vec<SettingView> = params.chain(filters).chain(rows).collect();
     all.sort_by_key(|setting| !setting.changed);
     all
 }

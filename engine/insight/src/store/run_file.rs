@@ -17,7 +17,7 @@ use engine::experiment::{Decider, Leg, Plan};
 use engine::filter::Catalogue;
 use engine::geometry::Twist;
 use engine::learner::Carry;
-use engine::script::Behaviour;
+use engine::script::{Behaviour, ParamValues};
 use engine::settings::{SETTINGS, Settings, Value, apply};
 use engine::world::Layout;
 
@@ -37,6 +37,9 @@ struct RunFile {
     actions: Vec<[f64; 2]>,
     filters: Vec<FilterEntry>,
     settings: Table,
+    /// The script's parameters with their values.
+    #[serde(default, skip_serializing_if = "ParamValues::is_empty")]
+    params: ParamValues,
     script: TextEntry,
     world: TextEntry,
     /// Of a combination: the policies, in the order of the script.
@@ -55,6 +58,8 @@ struct LegEntry {
     /// What became of the table then.
     table: Carry,
     settings: Table,
+    #[serde(default, skip_serializing_if = "ParamValues::is_empty")]
+    params: ParamValues,
     script: TextEntry,
 }
 
@@ -95,6 +100,7 @@ pub fn run_to_toml(plan: &Plan, seed: u64) -> Result<String> {
         steps: leg.steps,
         table: leg.then,
         settings: settings_table(&leg.plan.settings),
+        params: leg.plan.behaviour.param_values(),
         script: TextEntry::new(leg.plan.behaviour.source()),
     });
     let file = RunFile {
@@ -105,6 +111,7 @@ pub fn run_to_toml(plan: &Plan, seed: u64) -> Result<String> {
         actions: settings.actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
         filters: settings.filters.iter().map(|filter| FilterEntry::new(filter, &plan.filters)).collect(),
         settings: settings_table(settings),
+        params: plan.behaviour.param_values(),
         script: TextEntry::new(plan.behaviour.source()),
         world: TextEntry::new(&plan.layout.source),
         policy: plan.members.iter().map(|member| TextEntry::new(&member.source)).collect(),
@@ -176,18 +183,18 @@ impl StoredRun {
         let body = Settings::default().robot.body;
         let layout = Arc::new(Layout::parse(file.world.check(&source)?, &body)?);
         file.filters.iter().try_for_each(|filter| filter.check(&filters))?;
-        let plan_of = |script: &TextEntry, table: &Table| {
-            let behaviour = Arc::new(Behaviour::parse(&file.behaviour, script.check(&source)?)?);
+        let plan_of = |script: &TextEntry, table: &Table, params: &ParamValues| {
+            let behaviour = Arc::new(Behaviour::parse_with(&file.behaviour, script.check(&source)?, params)?);
             let settings = settings(&source, behaviour.settings(), &file, table)?;
             Plan::with_layout(behaviour, settings, Arc::clone(&layout), Arc::clone(&filters))
         };
-        let plan = plan_of(&file.script, &file.settings)?;
+        let plan = plan_of(&file.script, &file.settings, &file.params)?;
         let leg = |leg: &LegEntry| {
             if leg.steps > MOST_LEG_STEPS {
                 let message = format!("'{}' has a leg of {} steps", source.path.display(), leg.steps);
                 return Diagnostic::new("E-RUN-FILE", message).help("run the behaviour again").fail();
             }
-            let earlier = plan_of(&leg.script, &leg.settings)?;
+            let earlier = plan_of(&leg.script, &leg.settings, &leg.params)?;
             match plan.differs_beyond_reward(&earlier) {
                 None => Ok(Leg { plan: earlier, steps: leg.steps, then: leg.table }),
                 Some(what) => Err(Box::new(not_one_run(&source, &what))),
