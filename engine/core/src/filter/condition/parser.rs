@@ -288,8 +288,10 @@ impl Parser<'_> {
 
 fn unknown(name: &str, span: Range<usize>, is_call: bool) -> ConditionError {
     let names = ASKED.iter().map(|(name, ..)| *name).chain(FUNCTIONS.iter().map(|(name, _)| *name));
-    let meant = ASKED.iter().find(|(_, _, others)| others.contains(&name)).map(|(name, ..)| *name);
-    let help = match (name, meant.or_else(|| nearest_name(name, names.clone()))) {
+    let of_others = |other: &str| ASKED.iter().find(|(_, _, others)| others.contains(&other)).map(|(name, ..)| *name);
+    let others = ASKED.iter().flat_map(|(_, _, others)| others.iter().copied());
+    let meant = nearest_name(name, others).and_then(of_others);
+    let help = match (name, of_others(name).or_else(|| nearest_name(name, names.clone())).or(meant)) {
         ("and", _) => "'and' is written &&".to_owned(),
         ("or", _) => "'or' is written ||".to_owned(),
         ("not", _) => "'not' is written !".to_owned(),

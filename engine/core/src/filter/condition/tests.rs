@@ -74,6 +74,7 @@ fn a_mistake_says_where_it_is_and_what_to_write() {
         ("!r > 60", "r", "put the comparison into parentheses: !(r > 60)"),
         ("60 < r < 90", "<", "write 60 < r && r < 90"),
         ("red > 60", "red", "did you mean r?"),
+        ("gren > 60", "gren", "did you mean g?"),
         ("hue > 60", "hue", "did you mean hue_deg?"),
         ("brightnes > 60", "brightnes", "did you mean brightness?"),
         ("r - g", "r - g", "compare it: r - g > 60"),
