@@ -4,7 +4,7 @@ use std::io::IsTerminal;
 use std::path::Path;
 
 use engine::diagnostic::{Diagnostic, Result, all_codes, code_page, excerpt, nearest_name, printable};
-use engine::experiment::{FactReasons, Phase, Plan, Playback, RuleReasons, StepReasons};
+use engine::experiment::{FactReasons, GuardReasons, Phase, Plan, Playback, RuleReasons, StepReasons};
 use engine::robot::Robot;
 use insight::folder::create_folder;
 use insight::report::{FrameData, FramePanel, Picture, frame};
@@ -137,16 +137,7 @@ fn print(console: &mut Console, plan: &Plan, report: &StepReport) -> std::result
         false => " (the best one known)",
     };
     console.line(&format!("action:    {}{how}", motion(reasons.motion)))?;
-    for guard in &reasons.guards {
-        let read: Vec<&FactReasons> = guard.parts.iter().flat_map(|part| &part.facts).collect();
-        let why = if read.is_empty() { String::new() } else { format!(", since {}", facts(read)) };
-        console.line(&format!(
-            "guard:     \"{}\" (line {}) forbade {}{why}",
-            printable(&guard.name),
-            guard.line,
-            forbidden(plan, &guard.actions)
-        ))?;
-    }
+    print_guards(console, plan, &reasons.guards)?;
     let columns = plan.settings.grid.columns as usize;
     let (from, to) = (icon(&reasons.state.cells, columns), icon(&reasons.next_state.cells, columns));
     for (line, (from, to)) in from.iter().zip(&to).enumerate() {
@@ -185,6 +176,21 @@ fn print(console: &mut Console, plan: &Plan, report: &StepReport) -> std::result
         console.line(&format!("  \"{}\" (line {}): {}", printable(&rule.name), rule.line, silence(rule)))?;
     }
     console.line(&format!("\npictures:  {}\n           {}", report.pictures[0], report.pictures[1]))
+}
+
+/// What guards took away when the action was chosen, and why.
+fn print_guards(console: &mut Console, plan: &Plan, guards: &[GuardReasons]) -> std::result::Result<(), ConsoleError> {
+    for guard in guards {
+        let read: Vec<&FactReasons> = guard.parts.iter().flat_map(|part| &part.facts).collect();
+        let why = if read.is_empty() { String::new() } else { format!(", since {}", facts(read)) };
+        console.line(&format!(
+            "guard:     \"{}\" (line {}) forbade {}{why}",
+            printable(&guard.name),
+            guard.line,
+            forbidden(plan, &guard.actions)
+        ))?;
+    }
+    Ok(())
 }
 
 /// The actions that a guard took away, in words.
