@@ -29,7 +29,8 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("compare", &["store", "report"]),
     ("shelf", &["store", "report"]),
 ];
-const SHARED: &[&str] = &["geometry", "random", "saved", "settings", "diagnostic", "digest", "outcome", "stats"];
+const SHARED: &[&str] =
+    &["allowed", "geometry", "random", "saved", "settings", "diagnostic", "digest", "outcome", "stats"];
 /// Libraries that only some rooms may know. Clocks, hash maps, sines of the platform and fused steps are in clippy.toml.
 const ONLY_IN: &[(&str, &[&str])] = &[
     ("rhai::", &["judge", "script"]),

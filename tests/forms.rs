@@ -20,7 +20,7 @@ const THRESHOLDS: [f64; 5] = [1.0, 17.5, 60.0, 200.0, 1443.0];
 
 fn chain(catalogue: &Catalogue, (width, height): (usize, usize), threshold: f64) -> Chain {
     let parameters = vec![("threshold".to_owned(), threshold)];
-    let sobel = FilterSettings { name: "sobel".to_owned(), parameters };
+    let sobel = FilterSettings { parameters, ..FilterSettings::new("sobel") };
     Chain::new(&[sobel], width, height, catalogue).map_err(|error| error.error).unwrap()
 }
 

@@ -47,6 +47,8 @@ mod modules;
 mod native;
 /// A filter from the template: built, listed, checked, learned with.
 mod new_filter;
+/// Filters by a condition, parameters of scripts and guards, through the program.
+mod own_words;
 /// Behaviour packs: made, signed, refused, installed, shared.
 mod pack;
 /// The page of a run as a file: its data, its size, its policy.

@@ -40,7 +40,7 @@ fn tried(bytes: &[u8]) -> Result<Vec<u8>, Box<Diagnostic>> {
     std::fs::write(folder.path().join("bright.wasm"), bytes).unwrap();
     let sources = Sources { folders: vec![folder.path().to_owned()], without_linked_in: true, ..Sources::default() };
     let catalogue = Catalogue::new(sources)?;
-    let bright = FilterSettings { name: "bright".to_owned(), parameters: vec![] };
+    let bright = FilterSettings::new("bright");
     let mut chain = Chain::new(&[bright], 160, 120, &catalogue).map_err(|error| error.error)?;
     chain.apply(&Image::new(160, 120)).map(<[u8]>::to_vec)
 }

@@ -2,6 +2,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use engine::allowed::Allowed;
 use engine::diagnostic::{Result, SourceText};
 use engine::experiment::{Choice, Chooser, Decider, Overrides, Plan, in_parallel, test_choices, test_untrained};
 use engine::geometry::Twist;
@@ -60,7 +61,7 @@ const CHEATS: &[Cheat] = &[
 struct Blind(fn(u64) -> usize, u64);
 
 impl Chooser for Blind {
-    fn choose(&mut self, _: &[usize]) -> Result<Choice> {
+    fn choose(&mut self, _: &[usize], _: Allowed) -> Result<Choice> {
         self.1 += 1;
         Ok(Choice { action: (self.0)(self.1 - 1), explored: false })
     }

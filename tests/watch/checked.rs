@@ -1,4 +1,4 @@
-use super::served::{Served, message};
+use super::served::{Served, message, status};
 use crate::support::{Bench, SCRIPT};
 
 /// Whoever hardly moves is paid.
@@ -95,4 +95,35 @@ fn a_filter_that_comes_later_is_noticed_once_it_is_whole() {
     let third = message(&mut events, |said| said["kind"] == "run");
     assert_eq!(third["save"], 3);
     assert!(third["document"]["script"].as_str().unwrap().contains("<= 0.4"));
+}
+
+/// Posts another value of a parameter; gives the status.
+fn set(served: &Served, save: u64, name: &str, value: &str) -> u16 {
+    let Served { port, token, .. } = served;
+    let path = format!("/param?save={save}&name={name}&value={value}&token={token}");
+    status(&served.answer(
+        format!("POST {path} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nOrigin: http://127.0.0.1:{port}\r\n\r\n").as_bytes(),
+    ))
+}
+
+#[test]
+fn a_parameter_that_is_set_on_the_page_is_learned_with_as_after_a_save() {
+    let bench = Bench::new();
+    let script = SCRIPT.replace("0.25", "near");
+    bench.write("short.rhai", format!("const near = param(0.25, #{{ low: 0.1, high: 0.5 }});\n{script}"));
+    let served = Served::of(bench, "short.rhai", &[]);
+    let mut events = served.events();
+    let first = message(&mut events, |said| said["kind"] == "run" && said["done"] == true);
+    assert_eq!(first["document"]["params"][0]["value"], 0.25);
+    assert_eq!(
+        [set(&served, 1, "near", "0.6"), set(&served, 1, "far", "0.3"), set(&served, 9, "near", "0.3")],
+        [400, 400, 404]
+    );
+    assert_eq!(set(&served, 1, "near", "0.4"), 202);
+    let second = message(&mut events, |said| said["kind"] == "run" && said["done"] == true);
+    assert_eq!((&second["save"], &second["document"]["params"][0]["value"]), (&2.into(), &0.4.into()));
+    // Gone from the script, it is not asked for any more.
+    served.bench.write("short.rhai", SCRIPT);
+    let third = message(&mut events, |said| said["kind"] == "run" && said["done"] == true);
+    assert!(third["document"]["params"].is_null());
 }

@@ -7,6 +7,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use engine::allowed::Allowed;
 use engine::experiment::{Cycle, Learning, Ledger, Overrides, Phase, Plan, test};
 use engine::learner::{Carry, Learner, Mirror, Policy, PolicyRow, Task, Transition};
 use engine::random::Random;
@@ -35,16 +36,18 @@ impl Bandit {
         pairs.map(|pair| self.sums[pair] / self.tries[pair].max(1) as f64)
     }
 
-    fn best(&self, state: usize) -> usize {
+    fn best(&self, state: usize, allowed: Allowed) -> usize {
         let better = |best: (usize, f64), now: (usize, f64)| if now.1 > best.1 { now } else { best };
-        self.means(state).enumerate().fold((0, f64::NEG_INFINITY), better).0
+        let means = self.means(state).enumerate().filter(|(action, _)| allowed.contains(*action));
+        means.fold((0, f64::NEG_INFINITY), better).0
     }
 }
 
 impl Learner for Bandit {
-    fn choose(&mut self, state: usize) -> (usize, bool) {
-        let best = self.best(state);
-        let action = if self.random.unit() < 0.1 { self.random.below(self.actions as u32) as usize } else { best };
+    fn choose(&mut self, state: usize, allowed: Allowed) -> (usize, bool) {
+        let best = self.best(state, allowed);
+        let any = self.random.below(allowed.count(self.actions) as u32) as usize;
+        let action = if self.random.unit() < 0.1 { allowed.nth(any).unwrap_or(best) } else { best };
         (action, action != best)
     }
 

@@ -39,6 +39,7 @@
 
 #![deny(unsafe_code)] // but for filter/native/loaded.rs, where libraries are called
 
+pub mod allowed;
 pub mod diagnostic;
 pub mod digest;
 pub mod geometry;

@@ -35,6 +35,9 @@ pub struct Evidence {
     pub steps: u64,
     /// Steps of each test.
     pub test_steps: u64,
+    /// The script's parameters, each with its value and range in words.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub params: Vec<(String, String)>,
     /// The seed whose policy the pack carries.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub policy_seed: Option<u64>,
@@ -213,6 +216,7 @@ impl Evidence {
             figures: FIGURES,
             steps,
             test_steps,
+            params: runnable.plan.behaviour.params().iter().map(|param| (param.name.clone(), param.shown())).collect(),
             policy_seed: best.map(|proof| proof.claim.seed),
             seeds: proofs.iter().map(|proof| proof.claim.clone()).collect(),
         })

@@ -160,6 +160,7 @@ fn figures(evidence: &Evidence) -> Markup {
         rows.push(("seeds that learned", format!("{learned} of {}", evidence.seeds.len())));
         rows.push(("learned at step", claim.learned_at.map_or("never".to_owned(), |step| step.to_string())));
     }
+    rows.extend(evidence.params.iter().map(|(name, shown)| (name.as_str(), printable(shown))));
     rows.push(("failures in 1000 steps", format!("{failures_per_1000:.1}")));
     rows.extend(claim.untrained_failures_per_1000.map(|untrained| ("untrained", format!("{untrained:.1}"))));
     rows.push(("contacts", contacts.to_string()));
@@ -168,7 +169,7 @@ fn figures(evidence: &Evidence) -> Markup {
     html! {
         table {
             caption { "seed " (seed) ", test of " (evidence.test_steps) " steps" }
-            @for (name, value) in rows { tr { th { (name) } td { (value) } } }
+            @for (name, value) in rows { tr { th { (said(name)) } td { (value) } } }
         }
     }
 }

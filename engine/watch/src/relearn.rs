@@ -13,6 +13,7 @@ use super::session::Session;
 use super::{combined, findings};
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Plan, WINDOW_STEPS, in_parallel};
+use engine::script::ParamValues;
 
 /// A save is often several writes; so long it must be quiet.
 const QUIET: Duration = Duration::from_millis(15);
@@ -34,6 +35,8 @@ enum Why {
 #[derive(Clone)]
 pub struct Asker {
     sender: Sender<Why>,
+    /// Values of the script's parameters that somebody chose on the page.
+    chosen: Arc<Mutex<ParamValues>>,
     running: Arc<Mutex<Arc<AtomicBool>>>,
 }
 
@@ -41,6 +44,12 @@ impl Asker {
     /// Another run, from nothing; the one that is running ends.
     pub fn again(&self) {
         self.ask(Why::Wanted);
+    }
+
+    /// Another value of a parameter; what a save does happens then.
+    pub fn set(&self, name: &str, value: f64) {
+        self.chosen.lock().unwrap_or_else(PoisonError::into_inner).insert(name.to_owned(), value);
+        self.ask(Why::Saved);
     }
 
     fn ask(&self, why: Why) {
@@ -68,7 +77,7 @@ impl Relearner {
     #[must_use]
     pub fn new(settings: WatchSettings, board: Arc<Board>) -> Self {
         let (sender, asked) = channel();
-        let asker = Asker { sender, running: Arc::default() };
+        let asker = Asker { sender, chosen: Arc::default(), running: Arc::default() };
         Self { desk: Desk { settings, board, save: 0 }, asker, asked, session: None }
     }
 
@@ -226,9 +235,23 @@ impl Relearner {
         })
     }
 
+    /// The script with the values that somebody chose, as long as it takes them.
+    fn loaded(&self) -> Result<Plan> {
+        let WatchSettings { behaviour, overrides, filters, .. } = &self.desk.settings;
+        let mut chosen = self.asker.chosen.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut with = overrides.clone();
+        with.set.extend(chosen.iter().map(|(name, value)| format!("{name}={value}")));
+        match Plan::load(behaviour, &with, filters) {
+            Err(error) if error.code == "E-SET" && !chosen.is_empty() => {
+                chosen.clear();
+                Plan::load(behaviour, overrides, filters)
+            }
+            plan => plan,
+        }
+    }
+
     fn plan(&self, files: &Mutex<Files>) -> Result<Plan> {
-        let plan =
-            Plan::load(&self.desk.settings.behaviour, &self.desk.settings.overrides, &self.desk.settings.filters)?;
+        let plan = self.loaded()?;
         let world = plan.layout.source.path.clone();
         // A body that ships is no file.
         let body = plan.behaviour.body().map(|body| body.path.clone()).filter(|path| path.exists());

@@ -120,11 +120,24 @@ impl Server {
                 self.asker.again();
                 HttpAnswer::text(HttpStatus::ACCEPTED, "")
             }
-            (_, "/" | "/live" | "/track" | "/frame" | "/relearn") => {
+            ("POST", "/param") => self.set_param(request).unwrap_or_else(HttpAnswer::from),
+            (_, "/" | "/live" | "/track" | "/frame" | "/relearn" | "/param") => {
                 HttpAnswer::text(HttpStatus::METHOD_NOT_ALLOWED, "this is asked in another way")
             }
             _ => HttpAnswer::text(HttpStatus::NOT_FOUND, "there is nothing here"),
         }
+    }
+
+    /// Another value of one of the parameters of the script that is shown.
+    fn set_param(&self, request: &HttpRequest) -> std::result::Result<HttpAnswer, Refusal> {
+        let wrong = Refusal(HttpStatus::BAD_REQUEST, "there is no such parameter, or the value is out of its range");
+        let Some(run) = self.board.saved(number(request, "save")?) else { return Err(NOT_SHOWN) };
+        let (name, value) = (request.asked("name").ok_or(wrong)?, request.asked("value").ok_or(wrong)?);
+        let value: f64 = value.parse().map_err(|_| wrong)?;
+        let param = run.plan.behaviour.params().iter().find(|param| param.name == name).ok_or(wrong)?;
+        param.check(value).map_err(|_| wrong)?;
+        self.asker.set(name, value);
+        Ok(HttpAnswer::text(HttpStatus::ACCEPTED, ""))
     }
 
     /// The steps of one seed.

@@ -1,14 +1,35 @@
 //! What the command line changes in a behaviour's settings.
 
+use std::sync::Arc;
+
 use super::Overrides;
 use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
-use crate::settings::{SETTINGS, SettingError, Settings, UNNAMED_VIEW, Value, ViewSettings, apply};
+use crate::script::{Behaviour, Param, ParamValues, no_param};
+use crate::settings::{CONDITION, SETTINGS, SettingError, Settings, UNNAMED_VIEW, Value, ViewSettings, apply};
+
+impl Overrides {
+    /// The numbers that it sets and that are no setting: parameters of the script, if it has them.
+    pub(super) fn params(&self) -> ParamValues {
+        let pairs = self.set.iter().filter_map(|pair| pair.split_once('='));
+        let named = pairs.filter(|(name, _)| !name.contains('.'));
+        named.filter_map(|(name, text)| Some((name.trim().to_owned(), text.trim().parse().ok()?))).collect()
+    }
+}
+
+/// A script with the parameters that the command line sets; those that it does not have are told by [`changed`].
+pub(super) fn with_params(behaviour: Arc<Behaviour>, overrides: &Overrides) -> Result<Arc<Behaviour>> {
+    let mut values = overrides.params();
+    values.retain(|name, value| {
+        behaviour.params().iter().any(|param| param.name == *name && param.check(*value).is_ok())
+    });
+    if values.is_empty() { Ok(behaviour) } else { behaviour.with_values(&values).map(Arc::new) }
+}
 
 /// The settings with the changes.
-pub(super) fn changed(settings: &Settings, overrides: &Overrides) -> Result<Settings> {
+pub(super) fn changed(settings: &Settings, params: &[Param], overrides: &Overrides) -> Result<Settings> {
     let mut settings = settings.clone();
     for pair in &overrides.set {
-        set(&mut settings, pair)?;
+        set(&mut settings, params, pair)?;
     }
     if let Some(steps) = overrides.steps {
         settings.run.steps = steps;
@@ -23,16 +44,22 @@ pub(super) fn changed(settings: &Settings, overrides: &Overrides) -> Result<Sett
 }
 
 /// Carries out one `--set KEY=VALUE`.
-fn set(settings: &mut Settings, pair: &str) -> Result<()> {
+fn set(settings: &mut Settings, params: &[Param], pair: &str) -> Result<()> {
     let wrong = |message: String, help: String| Diagnostic::new("E-SET", message).help(help).fail();
     let Some((name, text)) = pair.split_once('=') else {
         let message = format!("'{}' is not KEY=VALUE", printable(pair));
         return wrong(message, "write for example: --set camera.tilt_deg=40".to_owned());
     };
     let Some((group, key)) = name.trim().split_once('.') else {
+        if let Some(param) = params.iter().find(|param| param.name == name.trim()) {
+            return param.check(text.trim().parse().unwrap_or(f64::NAN));
+        }
         let keys: Vec<_> = SETTINGS.iter().map(|row| row.name()).collect();
         let suffix = format!(".{}", name.trim());
         let near = keys.iter().find(|key| key.ends_with(&suffix)).map(String::as_str);
+        if near.is_none() && !params.is_empty() {
+            return no_param(params, name.trim()).fail();
+        }
         let near = near.or_else(|| nearest_name(name, keys.iter().map(String::as_str))).unwrap_or("camera.tilt_deg");
         return wrong(format!("there is no setting '{}'", printable(name)), format!("did you mean '{near}'?"));
     };
@@ -65,13 +92,18 @@ fn set_filter(view: &mut ViewSettings, key: &str, value: &Value, prefix: &str) -
         let number = names.iter().position(|known| known == name).or(number)?;
         Some((view.filters.get_mut(number)?, parameter))
     });
-    let (Some((filter, parameter)), Value::Number(number)) = (stage, value) else {
-        let message = format!("'{prefix}{}' is not a number of one of the behaviour's filters", printable(key));
-        let help = format!("write {prefix}NAME.PARAMETER=NUMBER; the filters are: {}", names.join(", "));
-        return Diagnostic::new("E-SET", message).help(help).fail();
-    };
-    filter.parameters.retain(|(name, _)| name != parameter);
-    filter.parameters.push((parameter.to_owned(), *number));
+    match (stage, value) {
+        (Some((filter, CONDITION)), Value::Text(condition)) => filter.condition = Some(condition.clone()),
+        (Some((filter, parameter)), Value::Number(number)) => {
+            filter.parameters.retain(|(name, _)| name != parameter);
+            filter.parameters.push((parameter.to_owned(), *number));
+        }
+        _ => {
+            let message = format!("'{prefix}{}' is not a number of one of the behaviour's filters", printable(key));
+            let help = format!("write {prefix}NAME.PARAMETER=NUMBER; the filters are: {}", names.join(", "));
+            return Diagnostic::new("E-SET", message).help(help).fail();
+        }
+    }
     Ok(())
 }
 

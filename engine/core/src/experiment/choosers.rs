@@ -1,6 +1,7 @@
 //! Those who choose: a learner, a frozen policy, several policies as one, a function, a record.
 
 use super::{Choice, Chooser, Disagreements, Step};
+use crate::allowed::Allowed;
 use crate::diagnostic::Result;
 use crate::learner::{Combined, Learner, Policy, Softmax, Transition};
 use crate::random::Random;
@@ -9,8 +10,8 @@ use crate::random::Random;
 pub struct Learns<'a, L: ?Sized>(pub &'a mut L);
 
 impl<L: Learner + ?Sized> Chooser for Learns<'_, L> {
-    fn choose(&mut self, states: &[usize]) -> Result<Choice> {
-        let (action, explored) = self.0.choose(states[0]);
+    fn choose(&mut self, states: &[usize], allowed: Allowed) -> Result<Choice> {
+        let (action, explored) = self.0.choose(states[0], allowed);
         Ok(Choice { action, explored })
     }
 
@@ -23,6 +24,7 @@ impl<L: Learner + ?Sized> Chooser for Learns<'_, L> {
             ending: step.ending(),
             potential: step.potential,
             next_potential: step.next_potential,
+            next_allowed: step.next_allowed,
         });
     }
 
@@ -47,10 +49,10 @@ impl<'a> Frozen<'a> {
 }
 
 impl Chooser for Frozen<'_> {
-    fn choose(&mut self, states: &[usize]) -> Result<Choice> {
+    fn choose(&mut self, states: &[usize], allowed: Allowed) -> Result<Choice> {
         let state = states[0];
-        let action = self.policy.choose(state, &mut self.softmax, &mut self.random);
-        let explored = self.policy.best(state).is_none_or(|(best, _)| best != action);
+        let action = self.policy.choose(state, allowed, &mut self.softmax, &mut self.random);
+        let explored = self.policy.best_among(state, allowed).is_none_or(|(best, _)| best != action);
         Ok(Choice { action, explored })
     }
 }
@@ -78,10 +80,10 @@ impl Together {
 }
 
 impl Chooser for Together {
-    fn choose(&mut self, states: &[usize]) -> Result<Choice> {
+    fn choose(&mut self, states: &[usize], allowed: Allowed) -> Result<Choice> {
         // The first state is the script's own.
         let states = &states[1..];
-        let decision = self.combined.choose(states, &mut self.random);
+        let decision = self.combined.choose(states, allowed, &mut self.random);
         self.disagreements.count(states, self.combined.votes(), &decision);
         Ok(Choice { action: decision.action, explored: false })
     }
@@ -91,7 +93,7 @@ impl Chooser for Together {
 pub struct ByState<F>(pub F);
 
 impl<F: FnMut(usize) -> usize> Chooser for ByState<F> {
-    fn choose(&mut self, states: &[usize]) -> Result<Choice> {
+    fn choose(&mut self, states: &[usize], _: Allowed) -> Result<Choice> {
         Ok(Choice { action: (self.0)(states[0]), explored: false })
     }
 }
@@ -100,7 +102,7 @@ impl<F: FnMut(usize) -> usize> Chooser for ByState<F> {
 pub(super) struct Recorded(pub Choice);
 
 impl Chooser for Recorded {
-    fn choose(&mut self, _: &[usize]) -> Result<Choice> {
+    fn choose(&mut self, _: &[usize], _: Allowed) -> Result<Choice> {
         Ok(self.0)
     }
 }

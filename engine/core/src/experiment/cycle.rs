@@ -1,8 +1,9 @@
 //! One step of the robot, the order of which is the order of the folders: act, sense, filter, state, judge.
 
+use crate::allowed::Allowed;
 use crate::diagnostic::{Diagnostic, Result};
 use crate::geometry::Twist;
-use crate::judge::{Facts, Judge, NO_ACTION};
+use crate::judge::{Facts, Judge, Leave, NO_ACTION};
 use crate::robot::Robot;
 use crate::sensors::observation::{Image, Observation};
 use crate::state::{Grid, StateMap};
@@ -26,6 +27,8 @@ pub struct Cycle<R> {
     potential: f64,
     laser_range_m: (f64, f64),
     laser_view_deg: f64,
+    /// What guards leave of the actions now.
+    leave: Leave,
 }
 
 impl<R> Cycle<R> {
@@ -79,6 +82,7 @@ impl<R: Robot> Cycle<R> {
             potential: 0.0,
             laser_range_m: (settings.laser.min_range_m, settings.laser.max_range_m),
             laser_view_deg: settings.laser.field_of_view_deg,
+            leave: Leave::default(),
         };
         cycle.observation.ground = cycle.judge.reads_ground().then(Default::default);
         cycle.perceive()?;
@@ -119,7 +123,7 @@ impl<R: Robot> Cycle<R> {
         self.judge = plan.judge()?;
         self.eyes[0].look_for(self.judge.looks());
         self.observation.ground = self.judge.reads_ground().then(Default::default);
-        self.potential = 0.0;
+        (self.potential, self.leave) = (0.0, Leave::default());
         self.calibrate()?;
         self.rest()
     }
@@ -136,6 +140,7 @@ impl<R: Robot> Cycle<R> {
             self.fill_facts(NO_ACTION, self.steps);
             self.judge.take()?;
             self.compose();
+            self.leave = self.judge.leave();
         }
         Ok(())
     }
@@ -165,7 +170,24 @@ impl<R: Robot> Cycle<R> {
         self.steps
     }
 
-    /// Carries out an action and judges what came of it.
+    /// The actions that the script's guards leave now: at least one.
+    #[must_use]
+    pub fn allowed(&self) -> Allowed {
+        self.leave.allowed
+    }
+
+    /// An action or, if a guard forbids it now, the slowest one that may be taken.
+    #[must_use]
+    pub fn instead_of(&self, action: usize) -> usize {
+        self.judge.guarding().instead_of(action, self.leave.allowed)
+    }
+
+    /// The same, with the guards that hold.
+    pub(super) fn leave(&self) -> Leave {
+        self.leave
+    }
+
+    /// Carries out an action, whatever guards say of it, and judges what came of it.
     ///
     /// # Errors
     /// If a sensor, a filter or the script fails; the message names the step.
@@ -177,8 +199,10 @@ impl<R: Robot> Cycle<R> {
         self.fill_facts(action, index + 1);
         let stage = self.judge.stage();
         let verdict = self.judge.judge().map_err(|error| at_step(error, index))?;
+        let guarded = !self.leave.allowed.is_all();
         if self.judge.remembers() {
             self.compose();
+            self.leave = self.judge.leave();
         }
         self.steps += 1;
         self.potential = self.judge.potential();
@@ -194,6 +218,8 @@ impl<R: Robot> Cycle<R> {
             then: verdict.then,
             entered: verdict.stage.filter(|entered| *entered != stage),
             contact: self.observation.contact,
+            guarded,
+            next_allowed: self.leave.allowed,
         })
     }
 

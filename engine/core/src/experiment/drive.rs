@@ -10,6 +10,7 @@
 use std::ops::ControlFlow;
 
 use super::{Cycle, Step};
+use crate::allowed::Allowed;
 use crate::diagnostic::Result;
 use crate::robot::Robot;
 
@@ -24,11 +25,12 @@ pub struct Choice {
 
 /// Who chooses the actions, and may learn from what came of them.
 pub trait Chooser {
-    /// Chooses in the present states: the script's own first, then one for each further pair of eyes.
+    /// Chooses in the present states: the script's own first, then one for each further pair of eyes. The script's guards
+    /// leave the actions that are `allowed`; in the place of any other one the slowest of them is taken.
     ///
     /// # Errors
     /// If there is nothing to choose: the run ends with this error.
-    fn choose(&mut self, states: &[usize]) -> Result<Choice>;
+    fn choose(&mut self, states: &[usize], allowed: Allowed) -> Result<Choice>;
 
     /// Learns from a step, before any recovery.
     fn learn(&mut self, _step: &Step) {}
@@ -77,8 +79,9 @@ pub(super) fn advance<R: Robot>(
     chooser: &mut impl Chooser,
     observer: &mut impl Observer<R>,
 ) -> Result<(Step, ControlFlow<()>)> {
-    let choice = chooser.choose(cycle.states())?;
-    let step = Step { explored: choice.explored, ..cycle.step(choice.action)? };
+    let choice = chooser.choose(cycle.states(), cycle.allowed())?;
+    let action = cycle.instead_of(choice.action);
+    let step = Step { explored: choice.explored, ..cycle.step(action)? };
     chooser.learn(&step);
     let flow = observer.stepped(cycle, &step);
     Ok((step, flow))

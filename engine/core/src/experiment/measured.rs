@@ -47,6 +47,7 @@ pub(super) fn figures(
         route_offset_m: along.map(|along| along.offsets_m / steps.max(1) as f64),
         metres_per_failure: net_route_m.map_or(distance_m, f64::abs) / (endings.failures + 1) as f64,
         contacts: tally.contacts(),
+        forbidden_per_1000: plan.behaviour.guards().next().map(|_| per_1000(tally.guarded() as f64)),
         mean_speed: distance_m / seconds,
         spinning: share(spells.spinning),
         standing: share(spells.standing),

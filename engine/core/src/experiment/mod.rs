@@ -49,7 +49,7 @@ pub use ledger::{Ledger, LedgerLeg, MOST_STEPS, Record, RecordShape};
 pub use legs::Leg;
 pub use plan::{Overrides, Plan};
 pub use playback::{Phase, Playback};
-pub use reasons::{FactReasons, PartReasons, RuleReasons, StateCells, StepReasons};
+pub use reasons::{FactReasons, GuardReasons, PartReasons, RuleReasons, StateCells, StepReasons};
 pub use rescore::{Rescored, RuleChange, RuleScore, plan_with_rules_of, rescore};
 pub use run_log::{CHUNK_STEPS, DIGEST_BYTES, RunLog, chained};
 pub use seed_run::{SeedRun, run_seed};

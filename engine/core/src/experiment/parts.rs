@@ -1,7 +1,9 @@
 //! What a script's settings are made into, each part checked by itself: chain, grid, judge, mirror.
 
+use std::ops::Range;
+
 use super::{Eyes, combination};
-use crate::diagnostic::{Diagnostic, Mistakes, Result};
+use crate::diagnostic::{Diagnostic, Mistakes, Result, printable};
 use crate::filter::{Catalogue, Chain, ChainError};
 use crate::geometry::Twist;
 use crate::judge::Judge;
@@ -58,7 +60,33 @@ impl Parts<'_> {
     fn in_chain(&self, view: &ViewSettings, error: ChainError) -> Box<Diagnostic> {
         let stage = view.place(&format!("filter:{}", error.stage));
         let place = error.parameter.map_or(stage.clone(), |parameter| format!("{stage}.{parameter}"));
-        self.point(*error.error, &place, "here", None)
+        match error.within {
+            Some(within) => self.in_condition(*error.error, error.stage, &place, within),
+            None => self.point(*error.error, &place, "here", None),
+        }
+    }
+
+    /// A mistake within a condition: at its place if the script has the condition as it stands, else with the words about it.
+    fn in_condition(
+        &self,
+        error: Diagnostic,
+        stage: usize,
+        place: &str,
+        (within, label): (Range<usize>, &str),
+    ) -> Box<Diagnostic> {
+        let source = self.behaviour.source();
+        let condition = self.settings.filters.get(stage).and_then(|filter| filter.condition.as_deref()).unwrap_or("");
+        let literal = self.behaviour.place_of(place).map_or(0, |span| span.start + 1);
+        if source.text.get(literal..).is_some_and(|text| !condition.is_empty() && text.starts_with(condition)) {
+            return Box::new(error.at(source, literal + within.start..literal + within.end, label));
+        }
+        let (before, after) = (&condition[..within.start], &condition[within.start..]);
+        let after = if after.is_empty() { "its end".to_owned() } else { format!("'{}'", printable(after)) };
+        let message = match before.is_empty() {
+            true => format!("{}: at {after}", error.message),
+            false => format!("{}: behind '{}' at {after}", error.message, printable(before)),
+        };
+        self.point(Diagnostic { message, ..error }, place, "in this condition", None)
     }
 
     fn image_px(&self) -> (usize, usize) {
@@ -151,7 +179,9 @@ impl Parts<'_> {
 
     /// A fresh judge.
     pub(super) fn judge(&self) -> Result<Judge> {
-        self.behaviour.judge(self.settings.run.period_s, self.settings.laser.fan())
+        let (run, laser, actions) = (&self.settings.run, &self.settings.laser, &self.settings.actions);
+        self.behaviour.check_guards(actions)?;
+        Ok(self.behaviour.judge(run.period_s, laser.fan())?.with_actions(actions))
     }
 
     fn point(&self, error: Diagnostic, place: &str, label: &str, help: Option<String>) -> Box<Diagnostic> {

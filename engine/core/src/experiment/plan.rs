@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::changes::changed;
+use super::changes::{changed, with_params};
 use super::parts::Parts;
 use super::{Eyes, Leg, Member, outlook};
 use crate::diagnostic::{Diagnostic, Mistakes, Result, nearest_name, printable};
@@ -62,6 +62,7 @@ impl Plan {
     /// # Errors
     /// As [`Plan::new`].
     pub fn with_filters(behaviour: Arc<Behaviour>, overrides: &Overrides, filters: Arc<Catalogue>) -> Result<Self> {
+        let behaviour = with_params(behaviour, overrides)?;
         let mistakes = Mistakes::new(behaviour.source());
         Self::resolve(behaviour, &Unread::default(), mistakes, overrides, filters)
     }
@@ -75,7 +76,7 @@ impl Plan {
         overrides: &Overrides,
         filters: impl FnOnce() -> Result<Arc<Catalogue>>,
     ) -> Result<Self> {
-        let Draft { behaviour, mistakes, unread } = Draft::load(script)?;
+        let Draft { behaviour, mistakes, unread } = Draft::load(script, &overrides.params())?;
         match filters() {
             Ok(filters) => Self::resolve(Arc::new(behaviour), &unread, mistakes, overrides, filters),
             Err(error) => Err(mistakes.ended_by(*error)),
@@ -89,7 +90,7 @@ impl Plan {
         overrides: &Overrides,
         filters: Arc<Catalogue>,
     ) -> Result<Self> {
-        let settings = match changed(behaviour.settings(), overrides) {
+        let settings = match changed(behaviour.settings(), behaviour.params(), overrides) {
             Ok(settings) => settings,
             // It may be about something that the script could not say.
             Err(error) => return mistakes.end().and(Err(error)),
@@ -109,12 +110,15 @@ impl Plan {
     /// # Errors
     /// As [`Plan::new`].
     pub fn with_changes(self, overrides: &Overrides) -> Result<Self> {
-        let settings = changed(&self.settings, overrides)?;
-        let layout = match &overrides.world {
-            Some(world) => Arc::new(Layout::load(&find_world(&self.behaviour, world, None)?, &settings.robot.body)?),
-            None => self.layout,
+        let behaviour = with_params(Arc::clone(&self.behaviour), overrides)?;
+        let followed = self.settings.clone().following(self.behaviour.settings(), behaviour.settings());
+        let settings = changed(&followed, behaviour.params(), overrides)?;
+        let layout = if overrides.world.is_some() || settings.world != self.settings.world {
+            Arc::new(Layout::load(&find_world(&behaviour, &settings.world, None)?, &settings.robot.body)?)
+        } else {
+            self.layout
         };
-        let plan = Self::with_layout(self.behaviour, settings, layout, self.filters)?;
+        let plan = Self::with_layout(behaviour, settings, layout, self.filters)?;
         Ok(plan.with_members(self.members).after(self.earlier))
     }
 

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{Plan, Playback};
 use crate::diagnostic::Result;
-use crate::judge::{FactRead, Judge, PartRead, RuleText};
+use crate::judge::{FactRead, Judge, Leave, PartRead, RuleText};
 use crate::outcome::Ending;
 
 /// One step with its reasons.
@@ -40,6 +40,22 @@ pub struct StepReasons {
     pub prey: Option<[f32; 3]>,
     /// Every rule, and `fn reward` last.
     pub rules: Vec<RuleReasons>,
+    /// The guards that took actions away when this one was chosen.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub guards: Vec<GuardReasons>,
+}
+
+/// What one guard kept from.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct GuardReasons {
+    /// Its name.
+    pub name: String,
+    /// Its line in the script, from 1.
+    pub line: usize,
+    /// The actions that it took away.
+    pub actions: Vec<usize>,
+    /// The parts of its condition, as they were then.
+    pub parts: Vec<PartReasons>,
 }
 
 /// A state with the cells that it stands for.
@@ -107,6 +123,9 @@ impl StepReasons {
     /// As [`Playback::advance`].
     pub fn of_next(playback: &mut Playback<'_>) -> Result<Option<Self>> {
         let (index, ledger) = (playback.done(), playback.ledger());
+        // What a guard read is known before the step alone.
+        playback.seek(index)?;
+        let guards = GuardReasons::all(playback.plan(), playback.cycle().judge(), playback.cycle().leave());
         let (Some(step), Some(record)) = (playback.advance()?, ledger.record(index)) else { return Ok(None) };
         let plan = playback.plan();
         let (cycle, twist) = (playback.cycle(), plan.settings.actions[step.action]);
@@ -139,6 +158,7 @@ impl StepReasons {
             pose: [pose.x_m, pose.y_m, pose.yaw_rad],
             prey: record.prey,
             rules: rules.collect(),
+            guards,
         }))
     }
 }
@@ -146,6 +166,20 @@ impl StepReasons {
 impl RuleReasons {
     fn of(plan: &Plan, text: &RuleText, judge: &Judge, rule: usize) -> Self {
         let (held, needed) = judge.held(rule);
+        Self {
+            name: text.name.clone(),
+            line: text.line,
+            added: None,
+            asked: true,
+            held,
+            needed,
+            parts: judge.evidence(rule).into_iter().map(|part| PartReasons::of(plan, part)).collect(),
+        }
+    }
+}
+
+impl PartReasons {
+    fn of(plan: &Plan, PartRead { span, holds, facts }: PartRead) -> Self {
         let fan = plan.settings.laser.fan();
         let fact = |fact: FactRead| FactReasons {
             angle_deg: fact.beam.map(|beam| fan.bearing_deg(beam)),
@@ -154,20 +188,28 @@ impl RuleReasons {
             unit: fact.unit,
             beam: fact.beam,
         };
-        let part = |PartRead { span, holds, facts }| PartReasons {
+        Self {
             text: plan.behaviour.source().text.get(span.clone()).unwrap_or_default().to_owned(),
             span: [span.start, span.end],
             holds,
             facts: facts.into_iter().map(fact).collect(),
-        };
-        Self {
-            name: text.name.clone(),
-            line: text.line,
-            added: None,
-            asked: true,
-            held,
-            needed,
-            parts: judge.evidence(rule).into_iter().map(part).collect(),
         }
+    }
+}
+
+impl GuardReasons {
+    /// Of the guards that hold now.
+    fn all(plan: &Plan, judge: &Judge, leave: Leave) -> Vec<Self> {
+        let guards = plan.behaviour.guards().enumerate().filter(|(index, _)| leave.holds(*index));
+        let of = |(index, text): (usize, &RuleText)| {
+            let forbidden = judge.guarding().forbidden(index);
+            Self {
+                name: text.name.clone(),
+                line: text.line,
+                actions: (0..plan.settings.actions.len()).filter(|action| forbidden.contains(*action)).collect(),
+                parts: judge.guard_evidence(index).into_iter().map(|part| PartReasons::of(plan, part)).collect(),
+            }
+        };
+        guards.map(of).collect()
     }
 }

@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use super::legs::first_fixed_difference;
 use super::{Ledger, Phase, Plan, Playback};
+use crate::allowed::Allowed;
 use crate::diagnostic::{Diagnostic, Result, printable};
 use crate::learner::{Learner, Policy, Transition, shipped_learner};
 use crate::outcome::Then;
@@ -21,6 +22,8 @@ use crate::settings::{LearnerKind, SETTINGS, apply};
 struct Judged {
     reward: f64,
     then: Option<Then>,
+    /// The actions that the script's guards leave at its end.
+    next_allowed: Allowed,
     /// The robot was put elsewhere after this step, because the recorded run asked for it.
     moved: bool,
 }
@@ -140,6 +143,7 @@ pub fn rescore(plan: &Plan, new: &Plan, seed: u64, ledger: &Ledger, passes: u64)
     while let Some(step) = playback.advance()? {
         judge.facts_mut().clone_from(playback.cycle().facts());
         let verdict = judge.judge()?;
+        let next_allowed = judge.leave().allowed;
         if step.then.is_some() || verdict.then.is_some() {
             judge.recovered();
         }
@@ -150,8 +154,8 @@ pub fn rescore(plan: &Plan, new: &Plan, seed: u64, ledger: &Ledger, passes: u64)
             }
         }
         let moved = step.then.is_some();
-        judged[0].push(Judged { reward: step.reward, then: step.then, moved });
-        judged[1].push(Judged { reward: verdict.reward, then: verdict.then, moved });
+        judged[0].push(Judged { reward: step.reward, then: step.then, next_allowed: step.next_allowed, moved });
+        judged[1].push(Judged { reward: verdict.reward, then: verdict.then, next_allowed, moved });
     }
     let [before, after] = judged;
     let pairs = || before.iter().zip(&after);
@@ -205,6 +209,7 @@ fn learn_along(plan: &Plan, seed: u64, ledger: &Ledger, judged: &[Judged], passe
                 ending: judged.then.map(|then| then.ending(judged.reward)),
                 potential: 0.0,
                 next_potential: 0.0,
+                next_allowed: judged.next_allowed,
             });
             // What follows does not follow from this step if the robot was put elsewhere.
             if judged.then.is_some() || judged.moved {

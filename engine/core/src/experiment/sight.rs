@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::changes::changed;
+use super::changes::{changed, with_params};
 use super::parts::Parts;
 use super::{Overrides, Plan};
 use crate::diagnostic::Result;
@@ -29,8 +29,8 @@ impl Sight {
     /// # Errors
     /// If the script cannot be loaded, a change does not fit, or the chain or the grid does not work.
     pub fn load(script: &Path, overrides: &Overrides, filters: Arc<Catalogue>) -> Result<Self> {
-        let behaviour = Arc::new(Behaviour::load(script)?);
-        let settings = changed(behaviour.settings(), overrides)?;
+        let behaviour = with_params(Arc::new(Behaviour::load(script)?), overrides)?;
+        let settings = changed(behaviour.settings(), behaviour.params(), overrides)?;
         let sight = Self { behaviour, settings, filters };
         sight.chain()?;
         sight.grid()?;

@@ -1,5 +1,6 @@
 //! What one step led to.
 
+use crate::allowed::Allowed;
 use crate::outcome::{Ending, Then};
 
 /// One step, from the choice of an action to what the script says of it.
@@ -27,6 +28,10 @@ pub struct Step {
     pub entered: Option<usize>,
     /// Whether the body touched something.
     pub contact: bool,
+    /// Whether a guard took an action away when this one was chosen.
+    pub guarded: bool,
+    /// The actions that guards leave at the end.
+    pub next_allowed: Allowed,
 }
 
 impl Step {

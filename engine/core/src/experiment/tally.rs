@@ -38,6 +38,7 @@ impl Tally {
         window.endings.count(step.ending());
         window.contacts += u64::from(step.contact);
         window.stages += u64::from(step.entered.is_some());
+        window.guarded += u64::from(step.guarded);
         window.rounds += u64::from(step.entered == Some(0));
         let from = self.by_rule.len() - self.fired.len();
         for (rule, value) in fired.iter().enumerate() {
@@ -101,6 +102,12 @@ impl Tally {
     #[must_use]
     pub fn contacts(&self) -> u64 {
         self.windows.iter().map(|window| window.contacts).sum()
+    }
+
+    /// Steps in whose choice a guard took an action away.
+    #[must_use]
+    pub fn guarded(&self) -> u64 {
+        self.windows.iter().map(|window| window.guarded).sum()
     }
 
     /// Changes of the stage, and of these, changes to the first.

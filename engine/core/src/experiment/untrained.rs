@@ -3,7 +3,9 @@
 use std::sync::atomic::AtomicBool;
 
 use super::{Choice, Chooser, Plan, test_choices};
+use crate::allowed::Allowed;
 use crate::diagnostic::Result;
+use crate::learner::any_of;
 use crate::random::{Random, Stream};
 use crate::verdict::TestFigures;
 
@@ -28,7 +30,7 @@ struct Untrained {
 }
 
 impl Chooser for Untrained {
-    fn choose(&mut self, _: &[usize]) -> Result<Choice> {
-        Ok(Choice { action: self.random.below(self.actions as u32) as usize, explored: true })
+    fn choose(&mut self, _: &[usize], allowed: Allowed) -> Result<Choice> {
+        Ok(Choice { action: any_of(self.actions, allowed, &mut self.random), explored: true })
     }
 }

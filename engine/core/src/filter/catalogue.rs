@@ -6,15 +6,16 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use filter_api::{FilterError, Plugin};
+use filter_api::{Descriptor, FilterError, Plugin};
 
-use super::entry::{Entry, Form};
+use super::condition;
+use super::entry::{Create, Entry, Form};
 use super::running::{Linked, Running, refused};
 use super::trust::Trust;
 use super::{native, wasm};
 use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
 
-/// The filters that are linked in, by name.
+/// The filters that are linked in, by name; the engine's own `where` comes after them.
 pub const LINKED_IN: &[Plugin] =
     &[blur::PLUGIN, colour::PLUGIN, floor::PLUGIN, horizon::PLUGIN, scharr::PLUGIN, sobel::PLUGIN, threshold::PLUGIN];
 
@@ -51,7 +52,8 @@ impl Catalogue {
     /// The filters that are linked in, and nothing else.
     #[must_use]
     pub fn linked_in() -> Self {
-        Self { linked_in: LINKED_IN.iter().map(linked).collect(), ..Self::default() }
+        let linked_in = LINKED_IN.iter().map(linked).chain([by_condition()]).collect();
+        Self { linked_in, ..Self::default() }
     }
 
     /// Those, and the files of folders; no file is opened yet.
@@ -143,7 +145,17 @@ fn linked(plugin: &Plugin) -> Arc<Entry> {
         let filter = create(values).map_err(|FilterError(words)| refused(&words))?;
         Ok(Box::new(Linked { name: descriptor.name, filter }))
     };
-    Arc::new(Entry { descriptor, form: Form::LinkedIn, path: None, sha256: None, create: Box::new(create) })
+    own(descriptor, false, Box::new(create))
+}
+
+/// The filter `where`, with a condition to begin with: its chain creates it with the script's own.
+fn by_condition() -> Arc<Entry> {
+    let create = |_: &[f64]| condition::create(condition::EXAMPLE).map_err(|error| refused(&error.message));
+    own(&condition::DESCRIPTOR, true, Box::new(create))
+}
+
+fn own(descriptor: &'static Descriptor, by_condition: bool, create: Create) -> Arc<Entry> {
+    Arc::new(Entry { descriptor, form: Form::LinkedIn, path: None, sha256: None, by_condition, create })
 }
 
 /// The files of a folder, sorted.
@@ -193,7 +205,7 @@ mod tests {
     fn a_misspelt_name_is_answered_with_the_nearest() {
         let help = |name: &str| Catalogue::linked_in().find(name).err().unwrap().help.unwrap();
         assert_eq!(help("sobol"), "did you mean \"sobel\"?");
-        assert_eq!(help("x"), "there are: blur, colour, floor, horizon, scharr, sobel, threshold");
+        assert_eq!(help("x"), "there are: blur, colour, floor, horizon, scharr, sobel, threshold, where");
     }
 
     #[test]

@@ -1,16 +1,18 @@
 //! Filters one after the other, types checked before the first frame.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use filter_api::{Descriptor, FilterError, Format, Frame, FrameMut, Parameter, ParameterKind};
 
 use super::catalogue::Catalogue;
+use super::condition::{self, ConditionError, EXAMPLE};
 use super::entry::{Entry, Form};
 use super::purity;
 use super::running::Running;
 use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
 use crate::sensors::observation::Image;
-use crate::settings::FilterSettings;
+use crate::settings::{CONDITION, FilterSettings};
 
 /// What a camera image passes through to become a mask.
 pub struct Chain {
@@ -32,6 +34,8 @@ pub struct ChainError {
     pub stage: usize,
     /// The parameter at fault, if it is one.
     pub parameter: Option<String>,
+    /// Where in the text of a condition, and what stands there.
+    pub within: Option<(Range<usize>, &'static str)>,
     /// What is wrong, and what to write instead.
     pub error: Box<Diagnostic>,
 }
@@ -39,7 +43,7 @@ pub struct ChainError {
 impl ChainError {
     fn new(stage: usize, message: String, help: Option<String>) -> Self {
         let error = Diagnostic::new("E-FILTER-SETTING", message);
-        Self { stage, parameter: None, error: Box::new(Diagnostic { help, ..error }) }
+        Self { stage, parameter: None, within: None, error: Box::new(Diagnostic { help, ..error }) }
     }
 }
 
@@ -55,7 +59,7 @@ impl Chain {
         height_px: usize,
         catalogue: &Catalogue,
     ) -> std::result::Result<Self, ChainError> {
-        let default = [FilterSettings { name: "sobel".to_owned(), parameters: Vec::new() }];
+        let default = [FilterSettings::new("sobel")];
         let settings = if settings.is_empty() { &default[..] } else { settings };
         if let Some(fault) = Self::faults(settings, catalogue).into_iter().next() {
             return Err(fault);
@@ -63,11 +67,14 @@ impl Chain {
         let mut stages: Vec<Stage> = Vec::with_capacity(settings.len());
         let mut format = Format::Rgb;
         for (index, filter) in settings.iter().enumerate() {
-            let at_stage = |error| ChainError { stage: index, parameter: None, error };
+            let at_stage = |error| ChainError { stage: index, parameter: None, within: None, error };
             let entry = catalogue.find(&filter.name).map_err(at_stage)?;
             let descriptor = entry.descriptor;
             let (values, _) = values(index, filter, descriptor.parameters);
-            let filter = create(&entry, &values, format).map_err(at_stage)?;
+            let filter = match (entry.by_condition, &filter.condition) {
+                (true, Some(text)) => condition::create(text).map_err(|wrong| in_condition(index, wrong))?,
+                _ => create(&entry, &values, format).map_err(at_stage)?,
+            };
             format = descriptor.writes;
             stages.push(Stage { descriptor, filter, output: vec![0; width_px * height_px * format.channels()] });
         }
@@ -82,10 +89,10 @@ impl Chain {
         // What comes out of the stage before; unknown behind an unknown filter.
         let mut format = Some(Format::Rgb);
         for (index, filter) in settings.iter().enumerate() {
-            let descriptor = match catalogue.find(&filter.name) {
-                Ok(entry) => entry.descriptor,
+            let (descriptor, by_condition) = match catalogue.find(&filter.name) {
+                Ok(entry) => (entry.descriptor, entry.by_condition),
                 Err(error) => {
-                    faults.push(ChainError { stage: index, parameter: None, error });
+                    faults.push(ChainError { stage: index, parameter: None, within: None, error });
                     format = None;
                     continue;
                 }
@@ -96,7 +103,10 @@ impl Chain {
                 let place = better_place(descriptor, &before, catalogue);
                 faults.push(ChainError::new(index, message, Some(place)));
             }
-            faults.extend(values(index, filter, descriptor.parameters).1);
+            faults.extend(fault_of_condition(index, filter, by_condition));
+            if !by_condition {
+                faults.extend(values(index, filter, descriptor.parameters).1);
+            }
             format = Some(descriptor.writes);
             before.push(descriptor);
         }
@@ -177,6 +187,40 @@ fn better_place(filter: &Descriptor, before: &[&Descriptor], catalogue: &Catalog
     format!("put one before it that writes {}: {}", self::names(reads), names.join(", "))
 }
 
+/// What is wrong with a condition: its first mistake, or that it stands where none belongs, or does not where one does.
+fn fault_of_condition(stage: usize, filter: &FilterSettings, by_condition: bool) -> Option<ChainError> {
+    let fail = |parameter: &str, message, help| {
+        let error = ChainError::new(stage, message, Some(help));
+        Some(ChainError { parameter: Some(parameter.to_owned()), ..error })
+    };
+    let name = &filter.name;
+    match (by_condition, &filter.condition, filter.parameters.first()) {
+        (true, _, Some((key, _))) => {
+            let message = format!("filter '{name}' has no parameter '{}'", printable(key));
+            fail(key, message, format!("it has its condition: #{{ {CONDITION}: \"{EXAMPLE}\" }}"))
+        }
+        (true, Some(text), None) => condition::check(text).err().map(|wrong| in_condition(stage, wrong)),
+        (true, None, None) => {
+            let message = format!("filter '{name}' needs a condition: which pixels it marks");
+            Some(ChainError::new(stage, message, Some(format!("write filter(\"{name}\", \"{EXAMPLE}\");"))))
+        }
+        (false, Some(_), _) => {
+            let message = format!("filter '{name}' marks by no condition");
+            fail(
+                CONDITION,
+                message,
+                format!("give its parameters by name; a condition belongs to filter(\"where\", \"{EXAMPLE}\");"),
+            )
+        }
+        (false, None, _) => None,
+    }
+}
+
+fn in_condition(stage: usize, wrong: ConditionError) -> ChainError {
+    let error = ChainError::new(stage, wrong.message, Some(wrong.help));
+    ChainError { parameter: Some(CONDITION.to_owned()), within: Some((wrong.span, wrong.label)), ..error }
+}
+
 /// The value of each parameter, and what is wrong with those that are written.
 fn values(stage: usize, filter: &FilterSettings, parameters: &[Parameter]) -> (Vec<f64>, Vec<ChainError>) {
     let mut values: Vec<f64> = parameters.iter().map(|parameter| parameter.default).collect();
@@ -228,7 +272,7 @@ mod tests {
 
     fn stage(name: &str, parameters: &[(&str, f64)]) -> FilterSettings {
         let parameters = parameters.iter().map(|(key, value)| ((*key).to_owned(), *value)).collect();
-        FilterSettings { name: name.to_owned(), parameters }
+        FilterSettings { parameters, ..FilterSettings::new(name) }
     }
 
     fn chain(settings: &[FilterSettings], width_px: usize) -> std::result::Result<Chain, ChainError> {
@@ -298,7 +342,7 @@ mod tests {
         assert_eq!(two_ways.help.as_deref(), Some("one chain makes one mask: leave out 'colour' or 'sobel'"));
         let first = error(&[stage("horizon", &[]), stage("sobel", &[])]);
         assert_eq!(first.message, "filter 'horizon' reads a mask, not colour");
-        let help = "put one before it that writes a mask: colour, floor, scharr, sobel, threshold";
+        let help = "put one before it that writes a mask: colour, floor, scharr, sobel, threshold, where";
         assert_eq!(first.help.as_deref(), Some(help));
         let grey_at_the_end = error(&[stage("blur", &[])]);
         assert_eq!(grey_at_the_end.message, "the last filter writes grey, but the grid needs a mask");

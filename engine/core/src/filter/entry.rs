@@ -31,7 +31,7 @@ impl Form {
 }
 
 /// Makes an instance from checked values.
-type Create = Box<dyn Fn(&[f64]) -> Result<Box<dyn Running>> + Send + Sync>;
+pub(super) type Create = Box<dyn Fn(&[f64]) -> Result<Box<dyn Running>> + Send + Sync>;
 
 /// A filter that can be used.
 pub struct Entry {
@@ -43,6 +43,8 @@ pub struct Entry {
     pub path: Option<PathBuf>,
     /// SHA-256 of that file, 64 hexadecimal digits.
     pub sha256: Option<String>,
+    /// Whether it marks by a condition, which a script writes as text.
+    pub by_condition: bool,
     pub(super) create: Create,
 }
 

@@ -5,6 +5,7 @@
 
 mod catalogue;
 mod chain;
+mod condition;
 mod conformance;
 #[cfg(any(feature = "native-filters", feature = "wasm"))]
 mod described;
@@ -18,6 +19,7 @@ mod wasm;
 
 pub use catalogue::{Catalogue, LINKED_IN, Sources, is_filter_file};
 pub use chain::{Chain, ChainError};
+pub use condition::{EXAMPLE, LANGUAGE};
 pub use conformance::conformance;
 pub use entry::{Entry, Form};
 pub use native::serve;

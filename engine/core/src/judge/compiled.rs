@@ -2,6 +2,7 @@
 
 use super::explain;
 use super::expression::{Number, StepFacts};
+use super::guards::CompiledGuard;
 use super::memory::Remembered;
 use super::needs::Needs;
 use super::readings::Part;
@@ -46,6 +47,8 @@ pub(crate) struct CompiledScript {
     pub ast: AST,
     pub constants: Scope<'static>,
     pub rules: Vec<CompiledRule>,
+    /// What an action must never do.
+    pub guards: Vec<CompiledGuard>,
     pub needs: Needs,
     /// What is worked out before the rules, in its order.
     pub remembered: Vec<Remembered>,
@@ -77,7 +80,9 @@ impl CompiledScript {
     /// Whether anything of it outlasts a step, besides how long conditions have held.
     pub(crate) fn remembers(&self) -> bool {
         let parts = !self.bins.is_empty() || !self.stages.is_empty();
-        self.looks_back || self.counts_way || !self.remembered.is_empty() || parts
+        // A guard must know the facts of a robot that was just put somewhere.
+        let has_guards = !self.guards.is_empty();
+        has_guards || self.looks_back || self.counts_way || !self.remembered.is_empty() || parts
     }
 
     /// Checks that every beam and every bearing that is named exists.

@@ -5,6 +5,7 @@ use super::evaluate::{Judgement, Present};
 use super::explain;
 use super::expression::Slot;
 use super::facts::{Facts, NO_ACTION, StageFacts};
+use super::guards::{Guarding, Leave};
 use super::memory::Memory;
 use super::odometry::Odometry;
 use super::readings::{self, PartRead};
@@ -39,6 +40,8 @@ pub struct Judge {
     is_taken: bool,
     /// Whether they become those of the step before when others are filled in.
     is_past: bool,
+    /// What guards take away of the actions.
+    guarding: Guarding,
 }
 
 /// The present stage, and what the wheels had counted when it was entered.
@@ -85,7 +88,26 @@ impl Judge {
             digits,
             is_taken: false,
             is_past: false,
+            guarding: Guarding::default(),
         }
+    }
+
+    /// This judge with guards over these actions; without, they take nothing away.
+    #[must_use]
+    pub(crate) fn with_actions(mut self, actions: &[Twist]) -> Self {
+        self.guarding = Guarding::new(&self.present.compiled.guards, actions);
+        self
+    }
+
+    /// What guards leave in the facts that were judged last. Allocates nothing.
+    #[must_use]
+    pub(crate) fn leave(&self) -> Leave {
+        self.guarding.leave(&self.present.compiled.guards, self.present.inputs())
+    }
+
+    /// What guards take away.
+    pub(crate) fn guarding(&self) -> &Guarding {
+        &self.guarding
     }
 
     /// The facts of the last step.
@@ -303,6 +325,12 @@ impl Judge {
     #[must_use]
     pub fn evidence(&self, rule: usize) -> Vec<PartRead> {
         self.present.parts(rule).iter().map(|part| part.evidence(self.present.inputs())).collect()
+    }
+
+    /// What the condition of a guard reads in the present facts, part by part.
+    pub(crate) fn guard_evidence(&self, guard: usize) -> Vec<PartRead> {
+        let parts = self.present.compiled.guards.get(guard).map_or(&[][..], |guard| &guard.parts);
+        parts.iter().map(|part| part.evidence(self.present.inputs())).collect()
     }
 
     /// Whether a rule's condition holds in the present facts; false where it fails.

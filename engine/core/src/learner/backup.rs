@@ -2,6 +2,7 @@
 
 use super::QTable;
 use super::traces::Traces;
+use crate::allowed::Allowed;
 use crate::saved::{Loading, Saving, Unfit};
 
 /// One step, as a table learns from it.
@@ -17,9 +18,17 @@ pub(super) struct Lesson {
     pub next_state: usize,
     /// Whether nothing is to be expected after this step.
     pub terminal: bool,
+    /// The actions that may be taken in that state.
+    pub next_allowed: Allowed,
 }
 
 impl Lesson {
+    /// The value of the best action that may be taken in the state at the end.
+    #[must_use]
+    pub(super) fn next_best(&self, table: &QTable) -> f64 {
+        table.best_among(self.next_state, self.next_allowed).1
+    }
+
     /// The TD target: reward plus the discounted value of what follows.
     #[must_use]
     pub(super) fn target(&self, discount: f64, next_value: f64) -> f64 {
@@ -49,12 +58,15 @@ impl Lesson {
         to.number(self.reward);
         to.whole(self.next_state as u64);
         to.whole(u64::from(self.terminal));
+        to.whole(self.next_allowed.bits());
     }
 
     pub(super) fn load(from: &mut Loading<'_>, table: &QTable) -> Result<Self, Unfit> {
         let (state, action) = (from.index(table.states())?, from.index(table.actions())?);
         let reward = from.number()?;
-        Ok(Self { state, action, reward, next_state: from.index(table.states())?, terminal: from.index(2)? == 1 })
+        let (next_state, terminal) = (from.index(table.states())?, from.index(2)? == 1);
+        let next_allowed = Allowed::of_bits(from.whole()?);
+        Ok(Self { state, action, reward, next_state, terminal, next_allowed })
     }
 }
 

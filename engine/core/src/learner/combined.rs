@@ -12,7 +12,8 @@
 //! policy has no values: it does not care, and adds nothing to a sum. Without any values, all actions are equally likely.
 
 use super::q_table::best_of;
-use super::{Policy, Softmax};
+use super::{Policy, Softmax, any_of};
+use crate::allowed::Allowed;
 use crate::random::Random;
 use crate::settings::{CombineSettings, CombineWay, LearnerSettings};
 use crate::stats::Sorted;
@@ -86,28 +87,32 @@ impl Combined {
     }
 
     /// Decides in the states that the policies perceive, one for each policy, in their order.
-    pub(crate) fn choose(&mut self, states: &[usize], random: &mut Random) -> Decision {
+    pub(crate) fn choose(&mut self, states: &[usize], allowed: Allowed, random: &mut Random) -> Decision {
         for ((vote, member), state) in self.votes.iter_mut().zip(&self.members).zip(states) {
             *vote = known(member, *state).map(|row| row.best);
         }
-        if self.by_priority { self.choose_by_priority(states, random) } else { self.choose_by_sum(states, random) }
+        if self.by_priority {
+            self.choose_by_priority(states, allowed, random)
+        } else {
+            self.choose_by_sum(states, allowed, random)
+        }
     }
 
-    fn choose_by_priority(&mut self, states: &[usize], random: &mut Random) -> Decision {
+    fn choose_by_priority(&mut self, states: &[usize], allowed: Allowed, random: &mut Random) -> Decision {
         let rows = self.members.iter().zip(states).map(|(member, state)| known(member, *state));
         let last = self.members.len().saturating_sub(1);
         let caring = rows.enumerate().find(|(index, row)| *index == last || row.is_some_and(|row| row.cares));
         let decider = caring.map(|(index, _)| index);
         match caring.and_then(|(_, row)| row) {
             Some(row) => {
-                let action = self.softmax.choose(&row.values, u64::MAX, random);
+                let action = self.softmax.choose(&row.values, allowed, u64::MAX, random);
                 Decision { action, preferred: Some(row.best), decider }
             }
-            None => Decision { action: random.below(self.sum.len() as u32) as usize, preferred: None, decider },
+            None => Decision { action: any_of(self.sum.len(), allowed, random), preferred: None, decider },
         }
     }
 
-    fn choose_by_sum(&mut self, states: &[usize], random: &mut Random) -> Decision {
+    fn choose_by_sum(&mut self, states: &[usize], allowed: Allowed, random: &mut Random) -> Decision {
         self.sum.fill(0.0);
         for row in self.members.iter().zip(states).filter_map(|(member, state)| known(member, *state)) {
             for (sum, value) in self.sum.iter_mut().zip(&row.values) {
@@ -115,7 +120,7 @@ impl Combined {
             }
         }
         let preferred = self.votes.iter().any(Option::is_some).then(|| best_of(&self.sum).0);
-        Decision { action: self.softmax.choose(&self.sum, u64::MAX, random), preferred, decider: None }
+        Decision { action: self.softmax.choose(&self.sum, allowed, u64::MAX, random), preferred, decider: None }
     }
 }
 
@@ -160,7 +165,7 @@ mod tests {
     }
 
     fn decide(combined: &mut Combined, states: &[usize]) -> Decision {
-        combined.choose(states, &mut Random::new(1, Stream::Test))
+        combined.choose(states, Allowed::ALL, &mut Random::new(1, Stream::Test))
     }
 
     #[test]

@@ -7,6 +7,7 @@
 
 use super::QTable;
 use super::backup::{Backup, Lesson};
+use crate::allowed::Allowed;
 use crate::geometry::Twist;
 use crate::saved::{Loading, Saving, Unfit};
 
@@ -37,11 +38,21 @@ impl Mirror {
         self.states[state]
     }
 
+    /// The mirror images of the actions that are allowed.
+    fn allowed(&self, allowed: Allowed) -> Allowed {
+        if allowed.is_all() {
+            return allowed;
+        }
+        let images = self.actions.iter().enumerate().filter(|(action, _)| allowed.contains(*action));
+        images.fold(Allowed::NONE, |all, (_, image)| all.with(*image))
+    }
+
     fn lesson(&self, lesson: &Lesson) -> Lesson {
         Lesson {
             state: self.states[lesson.state],
             action: self.actions[lesson.action],
             next_state: self.states[lesson.next_state],
+            next_allowed: self.allowed(lesson.next_allowed),
             ..*lesson
         }
     }
@@ -99,7 +110,7 @@ mod tests {
     }
 
     fn step(state: usize, action: usize, next_state: usize) -> Lesson {
-        Lesson { state, action, reward: -1.0, next_state, terminal: false }
+        Lesson { state, action, reward: -1.0, next_state, terminal: false, next_allowed: Allowed::ALL }
     }
 
     #[test]
@@ -140,5 +151,12 @@ mod tests {
         // nothing changes its error, since state 2 still has actions that are worth 0.
         assert!((table.value(0, 0) - -0.2 * 0.891).abs() < 1e-12);
         assert!((table.value(1, 2) - -0.2 * 0.891).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_allowed_on_the_left_is_allowed_on_the_right() {
+        let lesson = Lesson { next_allowed: Allowed::NONE.with(0).with(1), ..step(0, 0, 1) };
+        assert_eq!(mirror().lesson(&lesson).next_allowed, Allowed::NONE.with(1).with(2));
+        assert_eq!(mirror().lesson(&step(0, 0, 1)).next_allowed, Allowed::ALL);
     }
 }

@@ -52,12 +52,14 @@ mod traces;
 mod ttd;
 mod ttd_cichosz;
 
+use crate::allowed::Allowed;
 use crate::saved::{Loading, Saving, Unfit};
 use crate::settings::LearnerSettings;
 
 pub use carry::Carry;
 pub(crate) use combined::{Combined, Decision};
 pub use mirror::Mirror;
+pub(crate) use policy::any_of;
 pub use policy::{Policy, PolicyRow};
 use q_table::QTable;
 pub use shipped::{ShippedLearner, shipped_learner};
@@ -69,8 +71,9 @@ pub use task::{Task, Transition};
 ///
 /// States and actions are numbers; what they are made of is in the [`Task`] that a learner is made for.
 pub trait Learner: Send {
-    /// Chooses an action in `state` and counts the visit; also whether the action is another than the best known one.
-    fn choose(&mut self, state: usize) -> (usize, bool);
+    /// Chooses one of the actions that are `allowed` in `state` and counts the visit; also whether it is another one than the
+    /// best known of them.
+    fn choose(&mut self, state: usize, allowed: Allowed) -> (usize, bool);
 
     /// Counts a visit of a state in which someone else chose.
     fn visit(&mut self, state: usize);

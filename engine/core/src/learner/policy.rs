@@ -1,6 +1,7 @@
 //! A learned table that learns no more.
 
 use super::{QTable, Softmax};
+use crate::allowed::Allowed;
 use crate::random::Random;
 use crate::settings::LearnerSettings;
 
@@ -59,11 +60,16 @@ impl Policy {
         self.rows.get(state)?.as_ref().map(|row| super::q_table::best_of(&row.values))
     }
 
-    /// An action by softmax at the lowest temperature; any action, equally likely, in a state never visited.
-    pub(crate) fn choose(&self, state: usize, softmax: &mut Softmax, random: &mut Random) -> usize {
+    /// The best of some actions of a state and its value, if the state was ever visited.
+    pub(crate) fn best_among(&self, state: usize, allowed: Allowed) -> Option<(usize, f64)> {
+        self.rows.get(state)?.as_ref().map(|row| super::q_table::best_among(&row.values, allowed))
+    }
+
+    /// An action by softmax at the lowest temperature; any action, equally likely, in a state never visited. Only actions that are allowed.
+    pub(crate) fn choose(&self, state: usize, allowed: Allowed, softmax: &mut Softmax, random: &mut Random) -> usize {
         match self.rows.get(state) {
-            Some(Some(row)) => softmax.choose(&row.values, u64::MAX, random),
-            _ => random.below(self.actions as u32) as usize,
+            Some(Some(row)) => softmax.choose(&row.values, allowed, u64::MAX, random),
+            _ => any_of(self.actions, allowed, random),
         }
     }
 
@@ -72,4 +78,13 @@ impl Policy {
     pub(crate) fn softmax(&self, settings: &LearnerSettings) -> Softmax {
         Softmax::new(settings, self.actions)
     }
+}
+
+/// One of the actions that are allowed, each as likely as the others.
+pub(crate) fn any_of(actions: usize, allowed: Allowed, random: &mut Random) -> usize {
+    if allowed.is_all() {
+        return random.below(actions as u32) as usize;
+    }
+    let count = allowed.count(actions).max(1);
+    allowed.nth(random.below(count as u32) as usize).unwrap_or(0)
 }

@@ -1,5 +1,7 @@
 //! The table of values Q(s, a).
 
+use crate::allowed::Allowed;
+
 /// A value for each action in each state, and how often each state was visited.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct QTable {
@@ -51,10 +53,10 @@ impl QTable {
         self.values[state * self.actions + action] += amount;
     }
 
-    /// The best action of a state and its value; the first of equals.
+    /// The best of some actions of a state and its value; the first of equals.
     #[must_use]
-    pub(super) fn best(&self, state: usize) -> (usize, f64) {
-        best_of(self.row(state))
+    pub(super) fn best_among(&self, state: usize, allowed: Allowed) -> (usize, f64) {
+        best_among(self.row(state), allowed)
     }
 
     /// Counts a visit of a state and tells how many there were before.
@@ -80,6 +82,20 @@ impl QTable {
     pub(super) fn visits(&self) -> &[u64] {
         &self.visits
     }
+}
+
+/// The greatest of the values that are allowed and its place; the first of equals.
+#[must_use]
+pub(super) fn best_among(values: &[f64], allowed: Allowed) -> (usize, f64) {
+    if allowed.is_all() {
+        return best_of(values);
+    }
+    let some = values.iter().enumerate().filter(|(action, _)| allowed.contains(*action));
+    let best = some.fold(None, |best: Option<(usize, f64)>, (action, value)| match best {
+        Some((_, greatest)) if *value <= greatest => best,
+        _ => Some((action, *value)),
+    });
+    best.unwrap_or_else(|| best_of(values))
 }
 
 /// The index and value of the greatest of `values`; the first of equals.

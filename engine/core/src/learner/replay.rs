@@ -39,9 +39,9 @@ impl Replay {
     fn learn_again(&mut self, table: &mut QTable) {
         let Some(last) = self.segment.last() else { return };
         for _ in 0..self.passes {
-            let mut lambda_return = table.best(last.next_state).1;
+            let mut lambda_return = last.next_best(table);
             for lesson in self.segment.iter().rev() {
-                let utility = table.best(lesson.next_state).1;
+                let utility = lesson.next_best(table);
                 let mixed = (1.0 - self.trace_decay) * utility + self.trace_decay * lambda_return;
                 lambda_return = lesson.target(self.discount, mixed);
                 let error = lambda_return - table.value(lesson.state, lesson.action);
@@ -86,6 +86,7 @@ impl Backup for Replay {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::allowed::Allowed;
     use crate::settings::Settings;
 
     /// Learns nothing by itself, so that a test sees the replay alone.
@@ -107,7 +108,7 @@ mod tests {
     }
 
     fn step(state: usize, reward: f64) -> Lesson {
-        Lesson { state, action: 0, reward, next_state: state + 1, terminal: false }
+        Lesson { state, action: 0, reward, next_state: state + 1, terminal: false, next_allowed: Allowed::ALL }
     }
 
     #[test]

@@ -47,7 +47,7 @@ impl Backup for SarsaLambda {
     fn forget(&mut self, table: &mut QTable) {
         // No action follows the last step before a recovery; the best one stands in for it.
         if let Some(last) = self.pending.take() {
-            let next_value = table.best(last.next_state).1;
+            let next_value = last.next_best(table);
             self.complete(table, &last, next_value);
         }
         self.traces.clear();
@@ -71,6 +71,7 @@ impl Backup for SarsaLambda {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::allowed::Allowed;
     use crate::settings::Settings;
 
     #[test]
@@ -79,9 +80,15 @@ mod tests {
         table.add(1, 0, 5.0);
         table.add(1, 1, 1.0);
         let mut sarsa = SarsaLambda::new(&Settings::default().learner);
-        sarsa.learn(&mut table, &Lesson { state: 0, action: 0, reward: 2.0, next_state: 1, terminal: false });
+        sarsa.learn(
+            &mut table,
+            &Lesson { state: 0, action: 0, reward: 2.0, next_state: 1, terminal: false, next_allowed: Allowed::ALL },
+        );
         assert_eq!(table.value(0, 0), 0.0);
-        sarsa.learn(&mut table, &Lesson { state: 1, action: 1, reward: 0.0, next_state: 2, terminal: false });
+        sarsa.learn(
+            &mut table,
+            &Lesson { state: 1, action: 1, reward: 0.0, next_state: 2, terminal: false, next_allowed: Allowed::ALL },
+        );
         // 0.2 * (2 + 0.99 * 1 - 0)
         assert!((table.value(0, 0) - 0.598).abs() < 1e-12);
     }
@@ -90,7 +97,10 @@ mod tests {
     fn the_last_step_before_a_recovery_is_learned_too() {
         let mut table = QTable::new(2, 1, || -0.5);
         let mut sarsa = SarsaLambda::new(&Settings::default().learner);
-        sarsa.learn(&mut table, &Lesson { state: 0, action: 0, reward: -1.0, next_state: 1, terminal: false });
+        sarsa.learn(
+            &mut table,
+            &Lesson { state: 0, action: 0, reward: -1.0, next_state: 1, terminal: false, next_allowed: Allowed::ALL },
+        );
         sarsa.forget(&mut table);
         assert!((table.value(0, 0) - (-0.5 + 0.2 * (-1.0 - 0.495 + 0.5))).abs() < 1e-12);
     }

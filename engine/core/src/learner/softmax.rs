@@ -1,6 +1,7 @@
 //! Choosing by softmax, equation (3), at a temperature that falls with the visits of the state, equation (4).
 
-use super::q_table::best_of;
+use super::q_table::{best_among, best_of};
+use crate::allowed::Allowed;
 use crate::random::Random;
 use crate::settings::LearnerSettings;
 
@@ -25,9 +26,14 @@ impl Softmax {
         }
     }
 
-    /// An index into `values`, drawn with the probabilities of equation (3) in a state that had `visits` visits.
-    pub(super) fn choose(&mut self, values: &[f64], visits: u64, random: &mut Random) -> usize {
-        let total = self.weigh(values, temperature(self.start, self.end, self.cooling_visits, visits));
+    /// An index into `values`, drawn among those that are allowed with the probabilities of equation (3) in a state that had
+    /// `visits` visits.
+    pub(super) fn choose(&mut self, values: &[f64], allowed: Allowed, visits: u64, random: &mut Random) -> usize {
+        let temperature = temperature(self.start, self.end, self.cooling_visits, visits);
+        let total = match allowed.is_all() {
+            true => self.weigh(values, temperature),
+            false => self.weigh_allowed(values, allowed, temperature),
+        };
         let mut left = random.unit() * total;
         for (action, weight) in self.weights.iter().enumerate() {
             left -= weight;
@@ -47,6 +53,21 @@ impl Softmax {
             let exponent = (value - greatest) / temperature;
             // exp(-40) is 4e-18: nothing beside the best action's 1.
             *weight = if exponent < -40.0 { 0.0 } else { libm::exp(exponent) };
+            total += *weight;
+        }
+        total
+    }
+}
+
+impl Softmax {
+    /// As [`Softmax::weigh`], but what is not allowed weighs nothing.
+    fn weigh_allowed(&mut self, values: &[f64], allowed: Allowed, temperature: f64) -> f64 {
+        let (_, greatest) = best_among(values, allowed);
+        let mut total = 0.0;
+        for (action, (weight, value)) in self.weights.iter_mut().zip(values).enumerate() {
+            let exponent = (value - greatest) / temperature;
+            let counts = allowed.contains(action) && exponent >= -40.0;
+            *weight = if counts { libm::exp(exponent) } else { 0.0 };
             total += *weight;
         }
         total
@@ -91,7 +112,7 @@ mod tests {
         let mut softmax = Softmax::new(&Settings::default().learner, 3);
         let mut random = Random::new(1, Stream::Learner);
         for _ in 0..100 {
-            assert_eq!(softmax.choose(&[-90.0, -99.0, -98.0], 500, &mut random), 0);
+            assert_eq!(softmax.choose(&[-90.0, -99.0, -98.0], Allowed::ALL, 500, &mut random), 0);
         }
     }
 
@@ -99,8 +120,21 @@ mod tests {
     fn choices_come_as_often_as_their_probability() {
         let mut softmax = Softmax::new(&Settings::default().learner, 2);
         let mut random = Random::new(5, Stream::Learner);
-        let chosen = (0..20_000).filter(|_| softmax.choose(&[-1.0, -0.9], 0, &mut random) == 1).count();
+        let chosen = (0..20_000).filter(|_| softmax.choose(&[-1.0, -0.9], Allowed::ALL, 0, &mut random) == 1).count();
         // 4.1727 / 5.1727 = 0.8067; three deviations of 20,000 draws are 0.0084.
         assert!((chosen as f64 / 20_000.0 - 0.8067).abs() < 0.0084, "{chosen}");
+    }
+
+    #[test]
+    fn what_is_not_allowed_is_never_chosen_and_the_rest_by_its_own_probabilities() {
+        let mut softmax = Softmax::new(&Settings::default().learner, 3);
+        let mut random = Random::new(5, Stream::Learner);
+        let allowed = Allowed::NONE.with(1).with(2);
+        let mut chosen = [0_u32; 3];
+        for _ in 0..20_000 {
+            chosen[softmax.choose(&[9.0, -1.0, -0.9], allowed, 0, &mut random)] += 1;
+        }
+        // As of the two alone: 0.8067, give or take 0.0084.
+        assert!(chosen[0] == 0 && (f64::from(chosen[2]) / 20_000.0 - 0.8067).abs() < 0.0084, "{chosen:?}");
     }
 }

@@ -5,6 +5,7 @@ use super::mirror::Mirrored;
 use super::replay::Replay;
 use super::{Carry, Learner, Mirror, Policy, QTable, Softmax, Task, Transition};
 use super::{sarsa_lambda, ttd, ttd_cichosz};
+use crate::allowed::Allowed;
 use crate::outcome::Ending;
 use crate::random::Random;
 use crate::saved::{Loading, Saving, Unfit};
@@ -43,10 +44,10 @@ impl TableLearner {
 
 impl Learner for TableLearner {
     /// By softmax at the state's temperature.
-    fn choose(&mut self, state: usize) -> (usize, bool) {
+    fn choose(&mut self, state: usize, allowed: Allowed) -> (usize, bool) {
         let visits = self.count_visit(state);
-        let action = self.softmax.choose(self.table.row(state), visits, &mut self.random);
-        (action, self.table.best(state).0 != action)
+        let action = self.softmax.choose(self.table.row(state), allowed, visits, &mut self.random);
+        (action, self.table.best_among(state, allowed).0 != action)
     }
 
     fn visit(&mut self, state: usize) {
@@ -54,9 +55,9 @@ impl Learner for TableLearner {
     }
 
     fn learn(&mut self, transition: &Transition) {
-        let Transition { state, action, reward, next_state, ending, .. } = *transition;
+        let Transition { state, action, reward, next_state, ending, next_allowed, .. } = *transition;
         let terminal = self.failure_is_terminal && ending.is_some_and(Ending::is_terminal);
-        self.backup.learn(&mut self.table, &Lesson { state, action, reward, next_state, terminal });
+        self.backup.learn(&mut self.table, &Lesson { state, action, reward, next_state, terminal, next_allowed });
     }
 
     fn forget(&mut self) {
@@ -140,7 +141,16 @@ mod tests {
     }
 
     fn step(state: usize, action: usize, reward: f64, next_state: usize) -> Transition {
-        Transition { state, action, reward, next_state, ending: None, potential: 0.0, next_potential: 0.0 }
+        Transition {
+            state,
+            action,
+            reward,
+            next_state,
+            ending: None,
+            potential: 0.0,
+            next_potential: 0.0,
+            next_allowed: Allowed::ALL,
+        }
     }
 
     /// A walk of five states: action 0 goes left, action 1 right. Arriving at the right end pays 1 and starts again in
@@ -165,7 +175,7 @@ mod tests {
         fn go(&mut self, learner: &mut TableLearner, steps: usize) {
             for _ in 0..steps {
                 let state = self.state;
-                let (action, _) = learner.choose(state);
+                let (action, _) = learner.choose(state, Allowed::ALL);
                 let next_state = if action == 1 { (state + 1).min(4) } else { state.saturating_sub(1) };
                 let arrived = next_state == 4;
                 self.state = if arrived { 2 } else { next_state };
@@ -179,7 +189,7 @@ mod tests {
         for kind in LearnerKind::ALL {
             let mut learner = TableLearner::new(&Walk::settings(*kind), task(5, 2, 3));
             Walk { state: 2 }.go(&mut learner, 20_000);
-            let greedy: Vec<usize> = (0..4).map(|state| learner.table.best(state).0).collect();
+            let greedy: Vec<usize> = (0..4).map(|state| learner.table.best_among(state, Allowed::ALL).0).collect();
             assert_eq!(greedy, [1, 1, 1, 1], "{kind:?}");
         }
     }
@@ -217,8 +227,8 @@ mod tests {
         let actions = [Twist::new(0.2, 0.4), Twist::new(0.2, -0.4)];
         let mirror = Some(Mirror::new(vec![1, 0, 2], &actions).unwrap());
         let mut learner = TableLearner::new(&settings, Task { mirror, ..task(3, 2, 1) });
-        learner.choose(0);
-        learner.choose(2);
+        learner.choose(0, Allowed::ALL);
+        learner.choose(2, Allowed::ALL);
         assert_eq!(learner.table.visits(), [1, 1, 1]);
     }
 

@@ -1,5 +1,6 @@
 //! What a learner is made for, and what it is told.
 
+use crate::allowed::Allowed;
 use crate::geometry::Twist;
 use crate::outcome::Ending;
 use crate::random::Random;
@@ -48,4 +49,6 @@ pub struct Transition {
     pub potential: f64,
     /// What delayed rules have built up after the step, before any recovery.
     pub next_potential: f64,
+    /// The actions that guards leave after the step, before any recovery.
+    pub next_allowed: Allowed,
 }

@@ -31,8 +31,8 @@ impl Ttd {
 
 impl Backup for Ttd {
     fn learn(&mut self, table: &mut QTable, lesson: &Lesson) {
-        let Lesson { state, action, next_state, .. } = *lesson;
-        let td_error = lesson.target(self.discount, table.best(next_state).1) - table.value(state, action);
+        let Lesson { state, action, .. } = *lesson;
+        let td_error = lesson.target(self.discount, lesson.next_best(table)) - table.value(state, action);
         self.traces.visit(state, action);
         credit(table, &self.traces, self.step_size, td_error);
     }
@@ -53,10 +53,11 @@ impl Backup for Ttd {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::allowed::Allowed;
     use crate::settings::Settings;
 
     fn step(state: usize, reward: f64, next_state: usize) -> Lesson {
-        Lesson { state, action: 0, reward, next_state, terminal: false }
+        Lesson { state, action: 0, reward, next_state, terminal: false, next_allowed: Allowed::ALL }
     }
 
     #[test]
@@ -100,11 +101,12 @@ mod tests {
                 reward: -f64::from(u8::from(index % 3 == 0)),
                 next_state: index * 11 % 5,
                 terminal: false,
+                next_allowed: Allowed::ALL,
             };
             let Lesson { state, action, reward, next_state, .. } = lesson;
             q.learn(&mut one, &lesson);
             let by_hand = {
-                let error = reward + 0.99 * narrow.best(next_state).1 - narrow.value(state, action);
+                let error = reward + 0.99 * narrow.best_among(next_state, Allowed::ALL).1 - narrow.value(state, action);
                 narrow.value(state, action) + 0.2 * error
             };
             ttd.learn(&mut narrow, &lesson);
@@ -119,5 +121,16 @@ mod tests {
         let mut ttd = Ttd::new(&Settings::default().learner);
         ttd.learn(&mut table, &Lesson { terminal: true, ..step(0, -1.0, 1) });
         assert!((table.value(0, 0) - (-0.5 + 0.2 * (-1.0 + 0.5))).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_best_of_what_is_allowed_next_makes_the_target() {
+        let mut table = QTable::new(2, 2, || 0.0);
+        table.add(1, 0, 5.0);
+        table.add(1, 1, 1.0);
+        let mut q = Ttd::one_step(&Settings::default().learner);
+        q.learn(&mut table, &Lesson { next_allowed: Allowed::NONE.with(1), ..step(0, 2.0, 1) });
+        // 0.2 * (2 + 0.99 * 1 - 0)
+        assert!((table.value(0, 0) - 0.598).abs() < 1e-12);
     }
 }

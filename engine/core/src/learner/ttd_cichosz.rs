@@ -57,8 +57,8 @@ impl TtdCichosz {
 
 impl Backup for TtdCichosz {
     fn learn(&mut self, table: &mut QTable, lesson: &Lesson) {
-        let Lesson { state, action, reward, next_state, terminal } = *lesson;
-        let utility = if terminal { 0.0 } else { table.best(next_state).1 };
+        let Lesson { state, action, reward, terminal, .. } = *lesson;
+        let utility = if terminal { 0.0 } else { lesson.next_best(table) };
         self.buffer.push_back(Experience { state, action, reward, utility });
         if self.buffer.len() == self.window {
             self.learn_oldest(table);
@@ -95,10 +95,11 @@ impl Backup for TtdCichosz {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::allowed::Allowed;
     use crate::settings::Settings;
 
     fn step(state: usize, reward: f64, next_state: usize) -> Lesson {
-        Lesson { state, action: 0, reward, next_state, terminal: false }
+        Lesson { state, action: 0, reward, next_state, terminal: false, next_allowed: Allowed::ALL }
     }
 
     #[test]

@@ -1,8 +1,11 @@
 //! A script, loaded and checked.
 
+use super::guards;
 use super::outline::ScriptOutline;
+use super::params::{Param, ParamValues};
 use super::setup::SettingPlaces;
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, nearest_name, printable};
+use crate::geometry::Twist;
 use crate::judge::compiled::CompiledScript;
 use crate::judge::memory::Remembered;
 use crate::judge::rule::CompiledRule;
@@ -36,6 +39,7 @@ pub struct Behaviour {
     success: Vec<SuccessCondition>,
     endable: Endable,
     body: Option<SourceText>,
+    params: Vec<Param>,
 }
 
 impl Behaviour {
@@ -66,6 +70,7 @@ impl Behaviour {
             success: Vec::new(),
             endable,
             body: None,
+            params: Vec::new(),
         }
     }
 
@@ -81,6 +86,22 @@ impl Behaviour {
     #[must_use]
     pub fn body(&self) -> Option<&SourceText> {
         self.body.as_ref()
+    }
+
+    pub(super) fn with_params(self, params: Vec<Param>) -> Self {
+        Self { params, ..self }
+    }
+
+    /// The numbers that may be set from outside, in their order.
+    #[must_use]
+    pub fn params(&self) -> &[Param] {
+        &self.params
+    }
+
+    /// The value of each of them.
+    #[must_use]
+    pub fn param_values(&self) -> ParamValues {
+        self.params.iter().map(|param| (param.name.clone(), param.value)).collect()
     }
 
     /// What is called success in a world with a lap route or without one, in a test that takes so many seconds.
@@ -190,6 +211,19 @@ impl Behaviour {
     pub(crate) fn judge(&self, period_s: f64, fan: ScanFan) -> Result<Judge> {
         self.compiled.check_beams(fan)?;
         Ok(self.unchecked_judge(period_s, fan))
+    }
+
+    /// Checks that each guard takes some of these actions away, and leaves some.
+    ///
+    /// # Errors
+    /// For the first that does not.
+    pub(crate) fn check_guards(&self, actions: &[Twist]) -> Result<()> {
+        guards::check_actions(self.source(), &self.compiled.guards, actions)
+    }
+
+    /// The guards in their order.
+    pub fn guards(&self) -> impl Iterator<Item = &RuleText> {
+        self.compiled.guards.iter().map(|guard| &guard.text)
     }
 
     /// A judge for rules that may name beams that the laser does not have: these must not be judged.

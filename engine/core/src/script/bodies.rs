@@ -1,7 +1,9 @@
 //! The outline of a script: its rules, what stands in its functions, and which names are used at all.
 
 use super::access::{Access, Link};
+use super::guards::is_guard_expr;
 use super::outline::{BeamLoop, Gathers, ScriptOutline, UnusedName};
+use super::params::param_call;
 use super::positions::{body_end, span};
 use super::reader::{Local, OutlineReader};
 use super::source::Code;
@@ -241,13 +243,19 @@ fn uses(text: &str, name: &str) -> usize {
 
 fn unused(reader: &OutlineReader<'_>, ast: &AST, functions: &[OwnFunction]) -> Vec<UnusedName> {
     let (plain, source) = (&reader.code.plain, &reader.code.source);
-    let once = |name: &str| uses(plain, name) <= 1;
+    // What is spliced into a text is used too.
+    let spliced: Vec<&str> = source.text.split("${").skip(1).filter_map(|tail| tail.split('}').next()).collect();
+    let once = |name: &str| uses(plain, name) <= 1 && spliced.iter().all(|text| uses(text, name) == 0);
     let mut found: Vec<UnusedName> = Vec::new();
     for statement in ast.statements() {
         if let Stmt::Var(variable, flags, _) = statement {
             let (name, start) = (variable.0.name.as_str(), reader.at(variable.0.pos));
             let constant = flags.contains(rhai::ASTFlags::CONSTANT);
-            let what = if constant { "constant" } else { "variable" };
+            let what = match (param_call(&variable.1), constant) {
+                (Some(_), true) => "parameter",
+                (_, true) => "constant",
+                _ => "variable",
+            };
             if once(name) {
                 found.push(UnusedName { what, name: name.to_owned(), span: source.word_at(start) });
             }

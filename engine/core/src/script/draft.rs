@@ -5,6 +5,7 @@ use super::bodies::outline_of;
 use super::compile::{Compiler, Vocabulary};
 use super::named_body::{BodyFiles, beside};
 use super::outline::ScriptOutline;
+use super::params::{self, Declared, ParamValues};
 use super::rules::{rules, stage};
 use super::setup::{self, Log, SetUp};
 use super::source::{self, Code};
@@ -14,7 +15,10 @@ use super::success::FigureNames;
 use super::syntax::{Forms, written_rules};
 use super::tree::{Tree, tree};
 use super::unread::Unread;
-use super::{measures, memory, names, parts, rehearsal, state_parts, stops, success, syntax, top_level, types};
+use super::{
+    guards, is_key, measures, memory, names, params, parts, rehearsal, state_parts, stops, success, syntax, top_level,
+    types,
+};
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, printable};
 use crate::judge::Look;
 use crate::judge::compiled::CompiledScript;
@@ -38,23 +42,23 @@ pub(crate) struct Draft {
 }
 
 impl Draft {
-    /// Loads a script and looks for mistakes in it.
+    /// Loads a script with these values of its parameters and looks for mistakes in it.
     ///
     /// # Errors
     /// If nothing can be understood after a mistake: the file cannot be read as a script, or a limit stopped it.
-    pub(crate) fn load(path: &Path) -> Result<Self> {
+    pub(crate) fn load(path: &Path, values: &ParamValues) -> Result<Self> {
         let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-        Self::read(&name, source::read(path)?, &beside(path))
+        Self::read(&name, source::read(path)?, &beside(path), values)
     }
 
     /// Looks for mistakes in a script's text; `name` is the behaviour's.
     ///
     /// # Errors
     /// As [`Draft::load`].
-    fn read(name: &str, source: SourceText, files: &BodyFiles<'_>) -> Result<Self> {
+    fn read(name: &str, source: SourceText, files: &BodyFiles<'_>, values: &ParamValues) -> Result<Self> {
         let code = source::check_text(source)?;
         let mut mistakes = Mistakes::new(&code.source);
-        match Self::understood(name, &code, files, &mut mistakes) {
+        match Self::understood(name, &code, files, values, &mut mistakes) {
             Ok((behaviour, unread)) => Ok(Self { behaviour, mistakes, unread }),
             Err(last) => Err(mistakes.ended_by(last)),
         }
@@ -72,10 +76,12 @@ impl Draft {
         name: &str,
         code: &Code,
         files: &BodyFiles<'_>,
+        values: &ParamValues,
         mistakes: &mut Mistakes,
     ) -> std::result::Result<(Behaviour, Unread), Diagnostic> {
         let mut engine = sandbox::engine();
         syntax::register(&mut engine, Forms::of(code));
+        is_key::allow(&mut engine, code);
         let log = Log::register(&mut engine);
         let tree = tree(&mut engine, code, mistakes)?;
         let mut needs = Needs::default();
@@ -92,7 +98,9 @@ impl Draft {
         {
             return Err(Diagnostic::clone(refused));
         }
+        let declared = Declared::register(&mut engine, &tree, values);
         let constants = top_level::run(&engine, code, &tree, &log, &mut spoilt, mistakes)?;
+        let params = declared.finish(code, values, mistakes);
         spoilt.spread(mistakes);
         let calls = spoilt.setup_calls(mistakes);
         let SetUp { settings, places, mut unread, bins, body } = setup::finish(&log, code, &tree.ast, files, mistakes);
@@ -100,7 +108,8 @@ impl Draft {
         engine.register_global_module(constants_module(&constants).into());
         let read = ReadScript { code, tree, engine, constants, settings: &settings, needs, bins };
         let (compiled, outline, success) = read.compile(&spoilt, mistakes)?;
-        let behaviour = Behaviour::new(name, settings, places, outline, compiled).with_success(success).with_body(body);
+        let behaviour = Behaviour::new(name, settings, places, outline, compiled);
+        let behaviour = behaviour.with_success(success).with_body(body).with_params(params);
         check_with_settings(&behaviour, &mut spoilt, &unread, mistakes)?;
         Ok((behaviour, unread))
     }
@@ -132,6 +141,7 @@ impl ReadScript<'_> {
         measures::measures(code, &tree.ast, &tree.known.variables, &mut compiler, spoilt, mistakes);
         let bins = state_parts::bins(code, &tree.ast, &bins, &mut compiler, spoilt, mistakes);
         let rules = rules(code, &tree.ast, &mut compiler, spoilt, mistakes);
+        let guards = guards::guards(code, &tree.ast, &mut compiler, spoilt, mistakes);
         let reward_name = has_function(&tree.ast, "reward").then_some("reward");
         let names = FigureNames {
             rules: rules.iter().map(|rule| rule.text.name.as_str()).chain(reward_name).collect(),
@@ -164,6 +174,7 @@ impl ReadScript<'_> {
             constants,
             rules,
             looks: looks(&needs, views.len()),
+            guards,
             needs,
             remembered,
             views,
@@ -188,7 +199,7 @@ impl Behaviour {
     /// If the file cannot be read as a script, or anything in it is wrong: each mistake in the user's own line, with what
     /// to write.
     pub fn load(path: &Path) -> Result<Self> {
-        Draft::load(path)?.end()
+        Draft::load(path, &ParamValues::new())?.end()
     }
 
     /// Loads a script from its text; `name` is the behaviour's. Of bodies it knows those that ship.
@@ -196,15 +207,27 @@ impl Behaviour {
     /// # Errors
     /// If anything in it is wrong.
     pub fn parse(name: &str, source: SourceText) -> Result<Self> {
-        Self::parse_with(name, source, &|_| Ok(None))
+        Self::parse_with(name, source, &|_| Ok(None), &ParamValues::new())
     }
 
-    /// Loads a script from its text, with `bodies` before those that ship.
+    /// Loads a script from its text, with `bodies` before those that ship, and with these values of its parameters.
     ///
     /// # Errors
-    /// If anything in it, or in the file of its body, is wrong.
-    pub fn parse_with(name: &str, source: SourceText, bodies: &BodyFiles<'_>) -> Result<Self> {
-        Draft::read(name, source, bodies)?.end()
+    /// If anything in it, or in the file of its body, is wrong, or a value is none of its parameters or out of range.
+    pub fn parse_with(name: &str, source: SourceText, bodies: &BodyFiles<'_>, values: &ParamValues) -> Result<Self> {
+        let behaviour = Draft::read(name, source, bodies, values)?.end()?;
+        params::check_values(behaviour.params(), values).map(|()| behaviour)
+    }
+
+    /// This script with other values of its parameters; those that are not named keep theirs.
+    ///
+    /// # Errors
+    /// As [`Behaviour::parse_with`].
+    pub fn with_values(&self, values: &ParamValues) -> Result<Self> {
+        let mut all = self.param_values();
+        all.extend(values.clone());
+        let body = self.body().cloned();
+        Self::parse_with(self.name(), self.source().clone(), &|_| Ok(body.clone()), &all)
     }
 }
 
@@ -226,6 +249,9 @@ fn check_with_settings(
             let grid = settings.views().nth(view).map(|view| &view.grid);
             grid.map_or((usize::MAX, usize::MAX), |grid| (grid.rows as usize, grid.columns as usize))
         }));
+    }
+    if !unread.any_of("actions") {
+        mistakes.take(behaviour.check_guards(&behaviour.settings().actions));
     }
     if !unread.any_of("laser") {
         behaviour.find_unreachable(laser, f64::INFINITY, mistakes);

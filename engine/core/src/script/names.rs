@@ -1,6 +1,7 @@
 //! Every name in a script checked before anything runs: facts, functions, and where a rule may stand.
 
 use super::access::{Access, Link, fact_of};
+use super::guards::is_guard_expr;
 use super::setup_table::SETUP;
 use super::source::Code;
 use super::spoilt::Spoilt;
@@ -162,7 +163,9 @@ impl Names<'_> {
                 if matches!(path.last(), Some(ASTNode::Expr(expr)) if is_bins_expr(expr)) {
                     return self.bins_elsewhere(*position);
                 }
+                let guard = matches!(path.last(), Some(ASTNode::Expr(expr)) if is_guard_expr(expr));
                 let what = match (success, measure) {
+                    _ if guard => "a guard",
                     (true, _) => "a condition of success",
                     (_, true) => "a measure",
                     _ => "a rule",

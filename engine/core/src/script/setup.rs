@@ -41,7 +41,8 @@ impl Log {
     /// A log that is written until it is closed, and the calls that write it.
     pub(super) fn register(engine: &mut Engine) -> Self {
         let log = Self(Arc::new(Mutex::new((true, Vec::new()))));
-        for row in SETUP {
+        // A parameter is a value, not a setting.
+        for row in SETUP.iter().filter(|row| row.name != "param") {
             for count in 0..=MAX_ARGUMENTS {
                 let (log, name) = (log.clone(), row.name);
                 engine.register_raw_fn(name, vec![TypeId::of::<Dynamic>(); count], move |context, arguments| {
@@ -298,11 +299,14 @@ fn entries(ast: &AST) -> Entries {
         if let Some(ASTNode::Stmt(Stmt::FnCall(call, at)) | ASTNode::Expr(Expr::FnCall(call, at))) = path.last()
             && is_setup(call)
         {
+            if let ("filter", [_, condition]) = (call.name.as_str(), call.args.as_slice()) {
+                entries.insert((*at, CONDITION.to_owned()), (condition.start_position(), condition.start_position()));
+            }
             for argument in &call.args {
                 let Expr::Map(map, _) = argument else { continue };
                 for (ident, value) in &map.0 {
                     let place = (ident.pos, value.start_position());
-                    entries.entry((*at, ident.name.to_string())).or_insert(place);
+                    entries.insert((*at, ident.name.to_string()), place);
                 }
             }
         }

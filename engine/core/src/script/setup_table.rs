@@ -39,6 +39,11 @@ pub(super) const SETUP: &[SetupCall] = &[
         "stages([\"search\", \"approach\"]);",
         "What the robot can be about: it begins with the first, also after every recovery. The stage is one more digit of the state.",
     ),
+    row(
+        "param",
+        "const near = param(0.25, #{ low: 0.15, high: 0.5, unit: \"m\" });",
+        "A parameter: a constant that may be set from outside, within its range, as `--set near=0.3`.",
+    ),
     row("run", "run(#{ steps: 5200 });", "The length and the rhythm of a run."),
     row(
         "robot",

@@ -6,7 +6,7 @@ use super::state_parts::{BinsToken, WrittenBins};
 use crate::diagnostic::{Result, nearest_name, printable};
 use crate::judge::explain;
 use crate::judge::views::number;
-use crate::settings::{FilterSettings, PartSettings, UNNAMED_VIEW, Value, ViewSettings};
+use crate::settings::{CONDITION, FilterSettings, PartSettings, UNNAMED_VIEW, Value, ViewSettings};
 use rhai::{Dynamic, Map};
 
 /// Most views, most filters of one, and most parts of a state.
@@ -195,10 +195,13 @@ impl SetupReader<'_> {
         parameters: Option<Dynamic>,
         form: &str,
     ) -> Result<()> {
-        let mut filter = FilterSettings { name: self.word(name, form)?, parameters: Vec::new() };
+        let mut filter = FilterSettings::new(&self.word(name, form)?);
         let stage = view.place(&format!("filter:{}", view.filters.len()));
         self.mark(stage.clone(), self.call)?;
-        let parameters = parameters.unwrap_or_else(|| Map::new().into());
+        let mut parameters = parameters.unwrap_or_else(|| Map::new().into());
+        if parameters.is_string() {
+            parameters = Map::from([(CONDITION.into(), parameters)]).into();
+        }
         let Some(parameters) = parameters.try_cast::<Map>() else {
             return self.wrong(
                 self.call,
@@ -209,6 +212,11 @@ impl SetupReader<'_> {
         };
         for (key, value) in parameters {
             let (_, position) = self.entry(&key);
+            if let (CONDITION, Ok(condition)) = (key.as_str(), value.clone().into_immutable_string()) {
+                filter.condition = Some(condition.to_string());
+                self.mark(format!("{stage}.{key}"), position)?;
+                continue;
+            }
             let switch = value.as_bool().ok().map(|on| f64::from(u8::from(on)));
             match number(&value).or(switch).filter(|number| number.is_finite()) {
                 Some(number) => filter.parameters.push((key.to_string(), number)),

@@ -1,12 +1,14 @@
-//! The forms that the language adds to Rhai: rules, conditions of success, measures.
+//! The forms that the language adds to Rhai: rules, conditions of success, measures, guards.
 //!
 //! ```text
 //! rule "name" [in "stage", ...] when CONDITION [for N steps | for N seconds] [once] => VALUE [per second]
 //!             [then recover | fail | goal | restart | stage "name"];
 //! success "name" when CONDITION;
 //! measure name = EXPRESSION;
+//! forbid "name" when CONDITION => CONDITION OF THE ACTION;
 //! ```
 
+use super::guards::next_of_forbid;
 use super::source::Code;
 use super::state_parts;
 use crate::outcome::Then;
@@ -65,6 +67,7 @@ pub(super) struct Forms {
     pub success: bool,
     pub measure: bool,
     pub bins: bool,
+    pub forbid: bool,
 }
 
 impl Forms {
@@ -80,6 +83,7 @@ impl Forms {
             bins: begins_a_statement(code, "state", |tail| tail.starts_with('('))
                 && code.names("bins")
                 && !code.defines("bins"),
+            forbid: begins_a_statement(code, "forbid", |tail| tail.starts_with('"')),
         }
     }
 }
@@ -105,6 +109,9 @@ pub(super) fn register(engine: &mut Engine, forms: Forms) {
     }
     if forms.measure {
         engine.register_custom_syntax_with_state_raw("measure", next_of_measure, false, |_, _, _| Ok(Dynamic::UNIT));
+    }
+    if forms.forbid {
+        engine.register_custom_syntax_with_state_raw("forbid", next_of_forbid, false, |_, _, _| Ok(Dynamic::UNIT));
     }
 }
 
@@ -247,7 +254,7 @@ pub(super) fn is_measure_expr(expr: &Expr) -> bool {
 }
 
 /// The form that a statement is.
-fn form(statement: &Stmt) -> Option<(&Expr, &CustomExpr, Position)> {
+pub(super) fn form(statement: &Stmt) -> Option<(&Expr, &CustomExpr, Position)> {
     let Stmt::Expr(expr) = statement else { return None };
     let Expr::Custom(custom, position) = &**expr else { return None };
     Some((expr, custom, *position))

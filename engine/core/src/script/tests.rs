@@ -1,9 +1,11 @@
 //! What a script does when it runs.
 
 mod errors;
+mod guards;
 mod memory;
 mod mistakes;
 mod pages;
+mod params;
 mod remembered;
 mod robots;
 mod running;

@@ -20,7 +20,7 @@ pub use drive::{Bicycle, DriveLimits};
 pub use fan::ScanFan;
 pub(crate) use shipped_bodies::{SHIPPED_BODIES, shipped_body};
 pub use table::{SETTINGS, Setting, SettingError, SettingShape, Value, apply};
-pub use views::{FilterSettings, GridSettings, PartSettings, UNNAMED_VIEW, ViewSettings};
+pub use views::{CONDITION, FilterSettings, GridSettings, PartSettings, UNNAMED_VIEW, ViewSettings};
 pub use words::{CombineWay, LearnerKind, Lens, RecoverTo};
 
 /// Everything that a run needs besides its seed.
@@ -199,6 +199,27 @@ const PAPER_ACTIONS: [(f64, f64); 14] = [
     (0.05, 0.8),
     (0.05, -0.8),
 ];
+
+impl Settings {
+    /// These settings, but where a script's own changed `from` one `to` another they change too.
+    #[must_use]
+    pub(crate) fn following(mut self, from: &Self, to: &Self) -> Self {
+        for row in SETTINGS.iter().filter(|row| (row.get)(from) != (row.get)(to)) {
+            // What the other has is within its range.
+            let _ = apply(&mut self, row.group, row.key, &(row.get)(to));
+        }
+        if from.world != to.world {
+            self.world.clone_from(&to.world);
+        }
+        if from.filters != to.filters {
+            self.filters.clone_from(&to.filters);
+        }
+        if from.actions != to.actions {
+            self.actions.clone_from(&to.actions);
+        }
+        self
+    }
+}
 
 impl Default for Settings {
     fn default() -> Self {

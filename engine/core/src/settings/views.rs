@@ -16,6 +16,9 @@ pub struct ViewSettings {
     pub grid: GridSettings,
 }
 
+/// The parameter of a filter that holds a condition, not a number.
+pub const CONDITION: &str = "is";
+
 /// One stage of the filter chain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilterSettings {
@@ -23,6 +26,23 @@ pub struct FilterSettings {
     pub name: String,
     /// The parameters that the user set; the others have their defaults.
     pub parameters: Vec<(String, f64)>,
+    /// The condition of a filter that marks by one, as written.
+    pub condition: Option<String>,
+}
+
+impl FilterSettings {
+    /// A filter as it is: with no parameter set.
+    #[must_use]
+    pub fn new(name: &str) -> Self {
+        Self { name: name.to_owned(), parameters: Vec::new(), condition: None }
+    }
+
+    /// What is set of it, each with its value: `threshold 60`, `is "r > 60"`.
+    #[must_use]
+    pub fn shown(&self) -> Vec<String> {
+        let condition = self.condition.iter().map(|condition| format!("is \"{condition}\""));
+        condition.chain(self.parameters.iter().map(|(name, value)| format!("{name} {value}"))).collect()
+    }
 }
 
 /// How a filtered image becomes a state.

@@ -38,6 +38,9 @@ pub struct TestFigures {
     pub metres_per_failure: f64,
     /// Steps in which the body touched something.
     pub contacts: u64,
+    /// Steps in 1,000 in whose choice a guard took an action away; absent in a script without guards.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub forbidden_per_1000: Option<f64>,
     /// Path length over time, m/s.
     pub mean_speed: f64,
     /// Share of spells of 20 s with a full turn on a radius below 0.3 m.
@@ -311,6 +314,13 @@ pub const FIGURES: &[TestFigure] = &[
         "Steps in 1,000 in which the body touched something.",
     )
     .and_of_windows(|counts, _| counts.per_1000(counts.window.contacts)),
+    test(
+        "forbidden_per_1000",
+        "",
+        |test| test.forbidden_per_1000.unwrap_or(0.0),
+        "Steps in 1,000 in whose choice a guard took an action away.",
+    )
+    .and_of_windows(|counts, _| counts.per_1000(counts.window.guarded)),
     test("distance_m", "metres", |test| test.distance_m, "Length of the path."),
     test("mean_speed", "m/s", |test| test.mean_speed, "Length of the path over time."),
     route(

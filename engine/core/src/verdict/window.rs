@@ -20,6 +20,8 @@ pub struct Window {
     pub stages: u64,
     /// Of these, changes to the first stage.
     pub rounds: u64,
+    /// Steps in whose choice a guard took an action away.
+    pub guarded: u64,
 }
 
 /// A window with how often each rule fired in it.

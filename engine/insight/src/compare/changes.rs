@@ -64,8 +64,17 @@ fn settings(first: &Plan, other: &Plan) -> Vec<SettingChange> {
         ("actions".to_owned(), actions(a), actions(b)),
         ("filters".to_owned(), filters(a), filters(b)),
     ];
-    let mut changes: Vec<SettingChange> = further
-        .into_iter()
+    let of = |plan: &Plan, name: &str| {
+        let param = plan.behaviour.params().iter().find(|param| param.name == name);
+        param.map_or("none".to_owned(), |param| short(param.value))
+    };
+    let mut names: Vec<&str> =
+        [first, other].iter().flat_map(|plan| plan.behaviour.params()).map(|param| param.name.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    let params = names.into_iter().map(|name| (name.to_owned(), of(first, name), of(other, name)));
+    let mut changes: Vec<SettingChange> = params
+        .chain(further)
         .chain(rows)
         .filter(|(_, before, after)| before != after)
         .map(|(name, before, after)| SettingChange { name, before, after })
@@ -85,7 +94,7 @@ fn actions(settings: &Settings) -> String {
 
 fn filters(settings: &Settings) -> String {
     let filter = |filter: &engine::settings::FilterSettings| {
-        let parameters = filter.parameters.iter().map(|(name, value)| format!(" {name} {value}")).collect::<String>();
+        let parameters = filter.shown().iter().map(|shown| format!(" {shown}")).collect::<String>();
         format!("{}{parameters}", filter.name)
     };
     settings.view.filters.iter().map(filter).collect::<Vec<_>>().join(", ")

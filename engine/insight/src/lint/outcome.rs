@@ -6,6 +6,7 @@ use std::sync::atomic::AtomicBool;
 use super::exploit::cheats;
 use super::trial::LintTrial;
 use super::{Finding, read_flags};
+use engine::allowed::Allowed;
 use engine::diagnostic::{Result, printable};
 use engine::experiment::{Choice, Chooser, Plan, in_parallel, test_choices, test_untrained};
 use engine::judge::FactId;
@@ -97,7 +98,7 @@ struct Blind<'a> {
 }
 
 impl Chooser for Blind<'_> {
-    fn choose(&mut self, _: &[usize]) -> Result<Choice> {
+    fn choose(&mut self, _: &[usize], _: Allowed) -> Result<Choice> {
         let action = (self.choose)(self.step, 0);
         self.step += 1;
         Ok(Choice { action, explored: false })

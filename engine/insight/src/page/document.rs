@@ -12,6 +12,7 @@ use engine::diagnostic::Result;
 use engine::experiment::{Plan, WINDOW_STEPS};
 use engine::geometry::Twist;
 use engine::learner::Carry;
+use engine::script::Param;
 use engine::settings::{SETTINGS, Settings, Value};
 use engine::stats::Sorted;
 
@@ -63,6 +64,9 @@ pub struct Document {
     pub rules: Vec<RuleView>,
     /// The settings that differ from their defaults first, then the others.
     pub settings: Vec<SettingView>,
+    /// The script's parameters.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub params: Vec<ParamView>,
     /// The seeds.
     pub seeds: Vec<SeedView>,
     /// Moments with their pictures.
@@ -106,6 +110,28 @@ pub struct SettingView {
     pub unit: &'static str,
     /// Whether it differs from the default.
     pub changed: bool,
+}
+
+/// One parameter of the script.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ParamView {
+    /// Its name.
+    pub name: String,
+    /// What it is in this run.
+    pub value: f64,
+    /// The least value.
+    pub low: f64,
+    /// The greatest value.
+    pub high: f64,
+    /// Whether it is a whole number.
+    pub whole: bool,
+}
+
+impl From<&Param> for ParamView {
+    fn from(param: &Param) -> Self {
+        let Param { name, value, low, high, whole, .. } = param;
+        Self { name: name.clone(), value: *value, low: *low, high: *high, whole: *whole }
+    }
 }
 
 impl Document {
@@ -192,6 +218,7 @@ impl Document {
                 })
                 .collect(),
             settings: settings(plan),
+            params: plan.behaviour.params().iter().map(ParamView::from).collect(),
             seeds: Vec::new(),
             shots: Vec::new(),
             findings: lint::read(plan).iter().map(FindingView::from).collect(),
@@ -233,9 +260,15 @@ fn bytes_of_next(bytes: usize, document: &Document) -> usize {
 
 fn settings(plan: &Plan) -> Vec<SettingView> {
     let defaults = Settings::default();
+    let params = plan.behaviour.params().iter().map(|param| SettingView {
+        name: param.name.clone(),
+        value: param.shown(),
+        unit: "",
+        changed: true,
+    });
     let of_views = plan.settings.views().flat_map(|view| view.filters.iter().map(move |filter| (view, filter)));
     let filters = of_views.map(|(view, filter)| {
-        let parameters: Vec<String> = filter.parameters.iter().map(|(name, value)| format!("{name} {value}")).collect();
+        let parameters = filter.shown();
         SettingView {
             name: view.place(&format!("filter.{}", filter.name)),
             value: if parameters.is_empty() { "as it is".to_owned() } else { parameters.join(", ") },
@@ -253,7 +286,7 @@ fn settings(plan: &Plan) -> Vec<SettingView> {
         };
         SettingView { name: row.name(), value, unit: row.unit, changed }
     });
-    let mut all: Vec<SettingView> = robot(plan).into_iter().chain(filters).chain(rows).collect();
+    let mut all: Vec<SettingView> = params.chain(robot(plan)).chain(filters).chain(rows).collect();
     all.sort_by_key(|setting| !setting.changed);
     all
 }

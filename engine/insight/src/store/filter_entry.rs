@@ -16,13 +16,17 @@ pub(super) struct FilterEntry {
     /// The digest of the file that the filter came from; none for those linked in.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     sha256: Option<String>,
+    /// The condition of a filter that marks by one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    is: Option<String>,
     parameters: BTreeMap<String, f64>,
 }
 
 impl FilterEntry {
     pub(super) fn new(filter: &FilterSettings, filters: &Catalogue) -> Self {
         let sha256 = filters.find(&filter.name).ok().and_then(|entry| entry.sha256.clone());
-        Self { name: filter.name.clone(), sha256, parameters: filter.parameters.iter().cloned().collect() }
+        let parameters = filter.parameters.iter().cloned().collect();
+        Self { name: filter.name.clone(), sha256, is: filter.condition.clone(), parameters }
     }
 
     /// Refuses another file of the same name than was used then.
@@ -50,7 +54,7 @@ impl FilterEntry {
 
     pub(super) fn settings(&self) -> FilterSettings {
         let parameters = self.parameters.iter().map(|(key, value)| (key.clone(), *value)).collect();
-        FilterSettings { name: self.name.clone(), parameters }
+        FilterSettings { name: self.name.clone(), parameters, condition: self.is.clone() }
     }
 }
 

@@ -318,7 +318,7 @@ mod tests {
     fn filters_are_read_back_with_their_parameters() {
         let mut settings = Settings::default();
         let parameters = vec![("saturation".to_owned(), 0.4), ("hue_deg".to_owned(), 120.0)];
-        settings.view.filters = vec![FilterSettings { name: "colour".to_owned(), parameters }];
+        settings.view.filters = vec![FilterSettings { parameters, ..FilterSettings::new("colour") }];
         let source = SourceText::new("policy.toml", written(&settings).unwrap());
         let mut read = StoredPolicy::parse(&source).unwrap().filters;
         read[0].parameters.sort_by_key(|(name, _)| std::cmp::Reverse(name.clone()));

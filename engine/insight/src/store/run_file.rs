@@ -17,7 +17,7 @@ use engine::experiment::{Decider, Leg, Plan};
 use engine::filter::Catalogue;
 use engine::geometry::Twist;
 use engine::learner::Carry;
-use engine::script::Behaviour;
+use engine::script::{Behaviour, ParamValues};
 use engine::settings::{SETTINGS, Settings, Value, ViewSettings, apply};
 use engine::world::Layout;
 
@@ -42,6 +42,9 @@ struct RunFile {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     view: Vec<ViewEntry>,
     settings: Table,
+    /// The script's parameters with their values.
+    #[serde(default, skip_serializing_if = "ParamValues::is_empty")]
+    params: ParamValues,
     script: TextEntry,
     world: TextEntry,
     /// The body that the script names.
@@ -63,6 +66,8 @@ struct LegEntry {
     /// What became of the table then.
     table: Carry,
     settings: Table,
+    #[serde(default, skip_serializing_if = "ParamValues::is_empty")]
+    params: ParamValues,
     script: TextEntry,
 }
 
@@ -103,6 +108,7 @@ pub fn run_to_toml(plan: &Plan, seed: u64) -> Result<String> {
         steps: leg.steps,
         table: leg.then,
         settings: settings_table(&leg.plan.settings),
+        params: leg.plan.behaviour.param_values(),
         script: TextEntry::new(leg.plan.behaviour.source()),
     });
     let file = RunFile {
@@ -114,6 +120,7 @@ pub fn run_to_toml(plan: &Plan, seed: u64) -> Result<String> {
         filters: settings.view.filters.iter().map(|filter| FilterEntry::new(filter, &plan.filters)).collect(),
         view: settings.further_views.iter().map(|view| ViewEntry::new(view, &plan.filters)).collect(),
         settings: settings_table(settings),
+        params: plan.behaviour.param_values(),
         script: TextEntry::new(plan.behaviour.source()),
         world: TextEntry::new(&plan.layout.source),
         body: plan.behaviour.body().map(TextEntry::new),
@@ -193,26 +200,27 @@ impl StoredRun {
             return Diagnostic::new("E-RUN-FILE", message).fail();
         }
         let body = file.body.as_ref().map(|body| body.check(&source)).transpose()?;
-        let behaviour_of = |script: &TextEntry| {
+        let behaviour_of = |script: &TextEntry, params: &ParamValues| {
             // The run has the file of the one body that its script names.
-            Behaviour::parse_with(&file.behaviour, script.check(&source)?, &|_| Ok(body.clone())).map(Arc::new)
+            let bodies = |_: &str| Ok(body.clone());
+            Behaviour::parse_with(&file.behaviour, script.check(&source)?, &bodies, params).map(Arc::new)
         };
-        let shape = behaviour_of(&file.script)?.settings().robot.body;
+        let shape = behaviour_of(&file.script, &file.params)?.settings().robot.body;
         let layout = Arc::new(Layout::parse(file.world.check(&source)?, &shape)?);
         let further = file.view.iter().flat_map(|view| &view.filter);
         file.filters.iter().chain(further).try_for_each(|filter| filter.check(&filters))?;
-        let plan_of = |script: &TextEntry, table: &Table| {
-            let behaviour = behaviour_of(script)?;
+        let plan_of = |script: &TextEntry, table: &Table, params: &ParamValues| {
+            let behaviour = behaviour_of(script, params)?;
             let settings = settings(&source, behaviour.settings(), &file, table)?;
             Plan::with_layout(behaviour, settings, Arc::clone(&layout), Arc::clone(&filters))
         };
-        let plan = plan_of(&file.script, &file.settings)?;
+        let plan = plan_of(&file.script, &file.settings, &file.params)?;
         let leg = |leg: &LegEntry| {
             if leg.steps > MOST_LEG_STEPS {
                 let message = format!("'{}' has a leg of {} steps", source.path.display(), leg.steps);
                 return Diagnostic::new("E-RUN-FILE", message).help("run the behaviour again").fail();
             }
-            let earlier = plan_of(&leg.script, &leg.settings)?;
+            let earlier = plan_of(&leg.script, &leg.settings, &leg.params)?;
             match plan.differs_beyond_reward(&earlier) {
                 None => Ok(Leg { plan: earlier, steps: leg.steps, then: leg.table }),
                 Some(what) => Err(Box::new(not_one_run(&source, &what))),

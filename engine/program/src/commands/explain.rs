@@ -4,7 +4,9 @@ use std::io::IsTerminal;
 use std::path::Path;
 
 use engine::diagnostic::{Diagnostic, Result, all_codes, code_page, excerpt, nearest_name, printable};
-use engine::experiment::{Phase, Plan, Playback, RuleReasons, SeenView, StepReasons, ViewStage};
+use engine::experiment::{
+    FactReasons, GuardReasons, Phase, Plan, Playback, RuleReasons, SeenView, StepReasons, ViewStage,
+};
 use engine::robot::Robot;
 use insight::folder::create_folder;
 use insight::report::{FrameData, FramePanel, Picture, frame};
@@ -123,12 +125,16 @@ fn print(console: &mut Console, plan: &Plan, report: &StepReport) -> std::result
         reasons.step,
         short(reasons.time_s)
     ))?;
+    for param in plan.behaviour.params() {
+        console.line(&format!("parameter: {} = {}", printable(&param.name), param.shown()))?;
+    }
     let how = match reasons.explored {
         _ if !plan.learns() => "",
         true => " (tried, not the best one known)",
         false => " (the best one known)",
     };
     console.line(&format!("action:    {}{how}", motion(reasons.motion)))?;
+    print_guards(console, plan, &reasons.guards)?;
     let (_, columns) = plan.drawn_grid()?;
     let (from, to) = (icon(&reasons.state.cells, columns), icon(&reasons.next_state.cells, columns));
     for (line, (from, to)) in from.iter().zip(&to).enumerate() {
@@ -169,6 +175,31 @@ fn print(console: &mut Console, plan: &Plan, report: &StepReport) -> std::result
     console.line(&format!("\npictures:  {}\n           {}", report.pictures[0], report.pictures[1]))
 }
 
+/// What guards took away when the action was chosen, and why.
+fn print_guards(console: &mut Console, plan: &Plan, guards: &[GuardReasons]) -> std::result::Result<(), ConsoleError> {
+    for guard in guards {
+        let read: Vec<&FactReasons> = guard.parts.iter().flat_map(|part| &part.facts).collect();
+        let why = if read.is_empty() { String::new() } else { format!(", since {}", facts(read)) };
+        console.line(&format!(
+            "guard:     \"{}\" (line {}) forbade {}{why}",
+            printable(&guard.name),
+            guard.line,
+            forbidden(plan, &guard.actions)
+        ))?;
+    }
+    Ok(())
+}
+
+/// The actions that a guard took away, in words.
+fn forbidden(plan: &Plan, actions: &[usize]) -> String {
+    let all = &plan.settings.actions;
+    let shown = actions.iter().take(4).filter_map(|action| all.get(*action));
+    let shown: Vec<String> =
+        shown.map(|twist| format!("[{}, {}]", twist.linear_m_per_s, twist.angular_rad_per_s)).collect();
+    let more = if actions.len() > 4 { ", ..." } else { "" };
+    format!("{} of {} actions: {}{more}", actions.len(), all.len(), shown.join(" "))
+}
+
 /// A rule that fired, in its own line of the script.
 fn fired(plan: &Plan, rule: &RuleReasons) -> String {
     let added = rule.added.map_or(String::new(), short);
@@ -180,11 +211,9 @@ fn fired(plan: &Plan, rule: &RuleReasons) -> String {
     excerpt(&format!("{what} added {added}{long}"), plan.behaviour.source(), &places, colour)
 }
 
-fn facts(facts: &[engine::experiment::FactReasons]) -> String {
-    if facts.is_empty() {
-        return "this held".to_owned();
-    }
-    facts.iter().map(fact).collect::<Vec<_>>().join("; ")
+fn facts<'a>(read: impl IntoIterator<Item = &'a FactReasons>) -> String {
+    let words: Vec<String> = read.into_iter().map(fact).collect();
+    if words.is_empty() { "this held".to_owned() } else { words.join("; ") }
 }
 
 fn silence(rule: &RuleReasons) -> String {

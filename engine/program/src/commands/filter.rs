@@ -171,8 +171,8 @@ fn met(run: &Path, plan: &Sight) -> Result<Policy> {
     unfit(message, "its states mean something else; give its own script, and --set as it was learned with")
 }
 
-/// Every filter with the value of each of its parameters, given or not.
-fn eyes<'a>(settings: &'a Settings, filters: &Catalogue) -> Vec<(&'a str, Vec<f64>)> {
+/// Every filter with its condition and the value of each of its parameters, given or not.
+fn eyes<'a>(settings: &'a Settings, filters: &Catalogue) -> Vec<(&'a str, Option<&'a str>, Vec<f64>)> {
     let value = |given: &[(String, f64)], name: &str, default: f64| {
         given.iter().find(|(key, _)| key == name).map_or(default, |(_, value)| *value)
     };
@@ -181,13 +181,11 @@ fn eyes<'a>(settings: &'a Settings, filters: &Catalogue) -> Vec<(&'a str, Vec<f6
         parameters.iter().map(|parameter| value(given, parameter.name, parameter.default)).collect()
     };
     if settings.view.filters.is_empty() {
-        return vec![("sobel", values("sobel", &[]))];
+        return vec![("sobel", None, values("sobel", &[]))];
     }
-    settings
-        .view
-        .filters
-        .iter()
-        .map(|filter| (filter.name.as_str(), values(&filter.name, &filter.parameters)))
+    let filters = settings.view.filters.iter();
+    filters
+        .map(|filter| (filter.name.as_str(), filter.condition.as_deref(), values(&filter.name, &filter.parameters)))
         .collect()
 }
 

@@ -4,7 +4,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use engine::diagnostic::{Diagnostic, Result, printable};
-use engine::filter::{Catalogue, Entry, Form, conformance};
+use engine::filter::{Catalogue, EXAMPLE, Entry, Form, LANGUAGE, conformance};
+use engine::settings::CONDITION;
 use filter_api::{Descriptor, Format, Parameter, ParameterKind};
 use serde_json::{Value, json};
 
@@ -98,7 +99,9 @@ fn show(entry: &Entry, console: &mut Console) -> std::result::Result<(), Console
     console.line(&format!("reads:    {}", reads(filter)))?;
     console.line(&format!("writes:   {}", word(filter.writes)))?;
     console.line("")?;
-    if filter.parameters.is_empty() {
+    if entry.by_condition {
+        console.line(&format!("{CONDITION}: {LANGUAGE}"))?;
+    } else if filter.parameters.is_empty() {
         console.line("It has no parameters.")?;
     }
     for parameter in filter.parameters {
@@ -116,7 +119,7 @@ fn show(entry: &Entry, console: &mut Console) -> std::result::Result<(), Console
     }
     console.line("")?;
     console.line("in a script:")?;
-    console.line(&format!("    {}", script(filter)))
+    console.line(&format!("    {}", script(entry)))
 }
 
 fn listed(listed: &ListedFilter) -> Value {
@@ -161,12 +164,19 @@ fn manual(entry: &Entry) -> Value {
     let mut manual = brief(entry);
     manual["licence"] = json!(filter.licence);
     manual["parameters"] = filter.parameters.iter().map(parameter).collect();
-    manual["script"] = json!(script(filter));
+    if entry.by_condition {
+        manual[CONDITION] = json!(LANGUAGE);
+    }
+    manual["script"] = json!(script(entry));
     manual
 }
 
 /// The line of a script that uses the filter with all its defaults.
-fn script(filter: &Descriptor) -> String {
+fn script(entry: &Entry) -> String {
+    let filter = entry.descriptor;
+    if entry.by_condition {
+        return format!("filter(\"{}\", \"{EXAMPLE}\");", filter.name);
+    }
     if filter.parameters.is_empty() {
         return format!("filter(\"{}\");", filter.name);
     }

@@ -144,6 +144,9 @@ pub(crate) fn print_figures(console: &mut Console, test: &TestFigures, untrained
         counted(test.contacts, "contact"),
         test.mean_speed
     ))?;
+    if let Some(forbidden) = test.forbidden_per_1000 {
+        console.line(&format!("           guards took actions away in {forbidden:.1} of 1000 steps"))?;
+    }
     if test.goals + test.restarts > 0 {
         let restarts =
             if test.restarts > 0 { format!("; {}", counted(test.restarts, "restart")) } else { String::new() };

@@ -83,7 +83,12 @@ pub(crate) fn run(arguments: &RescoreArguments, console: &mut Console) -> std::r
         let error = Diagnostic::new("E-RESCORE", message);
         return Err(Box::new(error.help("run the behaviour again, and rescore that run")).into());
     }
-    let new = plan_with_rules_of(&plan, Arc::new(Behaviour::load(&arguments.script)?))?;
+    let script = Behaviour::load(&arguments.script)?;
+    // A parameter that both scripts have is what it was in the run.
+    let mut values = plan.behaviour.param_values();
+    values.retain(|name, value| script.params().iter().any(|own| own.name == *name && own.check(*value).is_ok()));
+    let script = if values.is_empty() { script } else { script.with_values(&values)? };
+    let new = plan_with_rules_of(&plan, Arc::new(script))?;
     let rescored = rescore(&plan, &new, seed, &log.learning, arguments.passes)?;
     let states_changed = rescored.changed_states();
     let states_changed = states_changed.iter().filter_map(|state| entry(&plan, &rescored, *state).transpose());

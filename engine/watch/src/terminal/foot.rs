@@ -64,6 +64,9 @@ fn figures(view: &View, wide: bool) -> Vec<Span<'static>> {
         spans.push(Span::styled("; test: ", TerminalInk::quiet()));
         let unit = if wide { "failures per 1,000 steps" } else { "failures/1,000" };
         spans.push(Span::raw(format!("{} {unit}", typeset(test.failures_per_1000))));
+        if let Some(forbidden) = test.forbidden_per_1000.filter(|_| wide) {
+            spans.push(Span::raw(format!(", {} guarded", typeset(forbidden))));
+        }
         if let Some(laps) = test.laps {
             spans.push(Span::raw(format!(", {} laps", typeset(laps))));
         }

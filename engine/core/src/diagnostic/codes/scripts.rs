@@ -46,6 +46,13 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
     ),
     ("E-SCRIPT-FILE", Kind::Input, "The script cannot be read from this path. Check the name; scripts end in .rhai."),
     (
+        "E-SCRIPT-GUARD",
+        Kind::Input,
+        "A guard says something that it cannot: forbid \"ahead\" when laser.front < 0.4 => action.linear > 0.0;\n\
+         Before => stands a condition over facts; behind it what no action may be, said of action.linear, \
+         action.angular and numbers alone. It must be true of some of the actions, and not of all.",
+    ),
+    (
         "E-SCRIPT-LIMIT",
         Kind::Limit,
         "The script used more than it may: operations, memory, depth or text.\n\
@@ -164,6 +171,6 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
         "E-SET",
         Kind::Usage,
         "A --set on the command line names no setting, or gives it a value that it cannot have.\n\
-         Write --set GROUP.KEY=VALUE, such as --set camera.tilt_deg=40.",
+         Write --set GROUP.KEY=VALUE, such as --set camera.tilt_deg=40; a parameter of the script by its name alone, --set near=0.3.",
     ),
 ];

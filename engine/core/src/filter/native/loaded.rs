@@ -39,7 +39,14 @@ pub(super) fn open(path: &Path, trust: &Trust) -> Result<Entry> {
         Ok(Box::new(InProcess { descriptor, native }))
     };
     let create = Box::new(create);
-    Ok(Entry { descriptor, form: Form::Native, path: Some(path.to_owned()), sha256: Some(sha256), create })
+    Ok(Entry {
+        descriptor,
+        form: Form::Native,
+        path: Some(path.to_owned()),
+        sha256: Some(sha256),
+        by_condition: false,
+        create,
+    })
 }
 
 /// A plugin of a library, which stays loaded until the program ends.

@@ -39,7 +39,14 @@ pub(super) fn open(path: &Path, trust: &Trust, program: &Path) -> Result<Entry> 
         Ok(Box::new(Isolated { descriptor, launch: launch.clone(), values: values.to_vec(), worker, frames: 0 }))
     };
     let create = Box::new(create);
-    Ok(Entry { descriptor, form: Form::Native, path: Some(path.to_owned()), sha256: Some(sha256), create })
+    Ok(Entry {
+        descriptor,
+        form: Form::Native,
+        path: Some(path.to_owned()),
+        sha256: Some(sha256),
+        by_condition: false,
+        create,
+    })
 }
 
 /// How to start a worker for one library.

@@ -46,7 +46,7 @@ pub(super) fn open(path: &Path, bytes: &[u8]) -> Result<Entry> {
     let create =
         move |values: &[f64]| -> Result<Box<dyn Running>> { Ok(Box::new(sandbox.create(descriptor, values)?)) };
     let (path, sha256) = (Some(path.to_owned()), Some(Digest::of(bytes).to_string()));
-    Ok(Entry { descriptor, form: Form::Wasm, path, sha256, create: Box::new(create) })
+    Ok(Entry { descriptor, form: Form::Wasm, path, sha256, by_condition: false, create: Box::new(create) })
 }
 
 fn engine() -> wasmtime::Result<Engine> {

@@ -48,7 +48,7 @@ fn without_actions_a_robot_has_those_of_every_script_that_it_can_do() {
                 drive = { kind = \"bicycle\", wheelbase_m = 0.33, steer_deg = 24 }\n";
     let script = SourceText::new("car.rhai", format!("robot(\"car\"); {RULE}"));
     let files = |name: &str| Ok((name == "car").then(|| SourceText::new("robots/car.toml", body)));
-    let car = Behaviour::parse_with("car", script, &files).unwrap();
+    let car = Behaviour::parse_with("car", script, &files, &ParamValues::new()).unwrap();
     let actions: Vec<_> = car.settings().actions.iter().map(|a| (a.linear_m_per_s, a.angular_rad_per_s)).collect();
     assert_eq!(actions, [(0.4, 0.2), (0.4, 0.0), (0.4, -0.2), (0.2, 0.2), (0.2, 0.0), (0.2, -0.2)]);
     assert_eq!(car.body().unwrap().path.to_str(), Some("robots/car.toml"));
@@ -67,7 +67,7 @@ fn a_robot_that_is_not_there_is_told_with_those_that_are() {
 fn every_mistake_of_a_body_file_is_told_at_its_place_there() {
     let told = |body: &'static str| {
         let script = SourceText::new("x.rhai", format!("robot(\"x\"); laser(#{{ beams: 9 }}); {RULE}"));
-        let wrong = Behaviour::parse_with("x", script, &|_| Ok(Some(SourceText::new("x.toml", body)))).unwrap_err();
+        let wrong = Behaviour::parse_with("x", script, &|_| Ok(Some(SourceText::new("x.toml", body))), &ParamValues::new()).unwrap_err();
         let told = |one: &crate::diagnostic::Diagnostic| {
             let place = one.place.as_ref().unwrap();
             assert_eq!(place.source.path.to_str(), Some("x.toml"));

@@ -45,6 +45,7 @@ function showDocument(doc, before) {
   script.draw(doc);
   checkedNow();
   showSettings(doc);
+  showParams(doc, app.live ? (name, value) => app.live.set(app.save, name, value) : null);
   setPhase(wasPhase);
   go(wasStep);
   complete();
@@ -103,7 +104,7 @@ function setPhase(phase) {
   $('facts').replaceChildren(
     ...(seed.curve.length ? ['learned ', el('b', { text: seed.learned_at === null ? 'not yet' : `at step ${whole(seed.learned_at)}` })] : ['policies combined']),
     ...(test ? [' · test: ', el('b', { text: `${short(test.failures_per_1000)} failures` }), ' in 1,000 steps, ',
-      el('b', { text: `${short(test.mean_speed)} m/s` }), ...(test.laps === null ? [] : [', ', el('b', { text: `${short(test.laps)} laps` })])] : []),
+      el('b', { text: `${short(test.mean_speed)} m/s` }), ...(test.forbidden_per_1000 === undefined ? [] : [', guards in ', el('b', { text: short(test.forbidden_per_1000) }), ' of 1,000 steps']), ...(test.laps === null ? [] : [', ', el('b', { text: `${short(test.laps)} laps` })])] : []),
   );
   app.shot = null;
   seeds.now(app.seed);

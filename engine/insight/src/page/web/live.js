@@ -32,6 +32,11 @@ class Live {
     return fetch(`/relearn?token=${encodeURIComponent(this.token)}`, { method: 'POST' });
   }
 
+  /** Another value of a parameter of the script: what a save does happens then. */
+  set(save, name, value) {
+    return fetch(`/param?${new URLSearchParams({ save, name, value, token: this.token })}`, { method: 'POST' });
+  }
+
   /** The steps of a seed that the document left out. */
   tracks(save, seed) {
     return this.get('/track', { save, seed });

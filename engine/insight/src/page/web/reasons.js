@@ -56,7 +56,8 @@ function showReasons(doc, track, index, reasons) {
     const facts = why ? why.parts.flatMap((part) => part.facts.map((fact) => factWords(fact, doc))) : [];
     return el('li', {}, chip(at), fired ? el('b', { text: rule.name }) : el('span', { class: 'quiet', text: rule.name }), ` ${words}`,
       ...[...new Set(facts)].map((fact) => el('div', { class: 'fact', text: fact })));
-  }), ...gone.map((rule) => el('li', { class: 'quiet', text: `${rule.name} ${signed(rule.added)}, in the script before the swap` }))));
+  }), ...(reasons?.guards ?? []).map((guard) => el('li', { class: 'quiet',
+    text: `${guard.name} forbade ${guard.actions.length} of ${doc.actions.length} actions` })), ...gone.map((rule) => el('li', { class: 'quiet', text: `${rule.name} ${signed(rule.added)}, in the script before the swap` }))));
 }
 
 /** The causes of one window of the curve: which rules, through which beams, when first. */
@@ -155,6 +156,30 @@ class Script {
   wrong(numbers) {
     this.lines.forEach(({ line: line_ }, index) => line_.classList.toggle('wrong', numbers.includes(index + 1)));
   }
+}
+
+/** A slider for a parameter; `set` is told its new value when it is let go. */
+function slider({ name, value, low, high, whole }, set) {
+  const step = whole ? 1 : (high - low) / 200;
+  const shown = el('output', { text: String(value) });
+  const input = el('input', { type: 'range', min: low, max: high, step, 'aria-label': name,
+    oninput: () => { shown.textContent = String(round(input.value)); },
+    onchange: () => set(name, round(input.value)) });
+  const round = (text) => (whole ? Number(text) : Math.min(high, Math.max(low, Number(Number(text).toPrecision(4)))));
+  input.value = value;
+  return el('label', { class: 'param' }, name, input, shown);
+}
+
+/** Sliders for the parameters of the script, if there is somebody to learn with them. */
+function showParams(doc, set) {
+  const box = $('params');
+  const params = (set && doc.params) || [];
+  box.hidden = !params.length;
+  // A document comes every second: a slider that is being moved stays.
+  const shown = JSON.stringify(params);
+  if (box.dataset.shown === shown) return;
+  box.dataset.shown = shown;
+  box.replaceChildren(...params.map((param) => slider(param, set)));
 }
 
 function showSettings(doc) {

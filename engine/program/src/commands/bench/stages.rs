@@ -3,6 +3,7 @@
 use std::hint::black_box;
 use std::sync::Arc;
 
+use engine::allowed::Allowed;
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Cycle, Ledger, Observer, Plan, Step};
 use engine::filter::Chain;
@@ -153,9 +154,18 @@ impl Stages {
 
     fn learner(&mut self, index: usize) {
         let (state, next_state) = (self.samples[index].state, self.samples[(index + 1) % SAMPLES].state);
-        let (action, _) = self.learner.choose(state);
+        let (action, _) = self.learner.choose(state, Allowed::ALL);
         let (potential, next_potential) = (0.0, 0.0);
-        let transition = Transition { state, action, reward: 0.0, next_state, ending: None, potential, next_potential };
+        let transition = Transition {
+            state,
+            action,
+            reward: 0.0,
+            next_state,
+            ending: None,
+            potential,
+            next_potential,
+            next_allowed: Allowed::ALL,
+        };
         self.learner.learn(&transition);
     }
 }

@@ -63,10 +63,13 @@ pub(super) fn description(pack: &Pack, signed: Option<&str>) -> Value {
 
 /// What is claimed, a line for each seed.
 pub(super) fn print_evidence(console: &mut Console, manifest: &Manifest) -> std::result::Result<(), ConsoleError> {
-    let Some(Evidence { steps, test_steps, seeds, .. }) = &manifest.evidence else {
+    let Some(Evidence { steps, test_steps, seeds, params, .. }) = &manifest.evidence else {
         return console.line("claims:    nothing");
     };
     console.line(&format!("claims:    {} seeds, {steps} steps of learning, {test_steps} of test", seeds.len()))?;
+    for (name, shown) in params {
+        console.line(&format!("  parameter {}: {}", printable(name), printable(shown)))?;
+    }
     for claim in seeds {
         let learned = match claim.learned_at {
             Some(step) => format!("learned at step {step}"),
