@@ -36,11 +36,11 @@ fn a_condition_of_pixels_is_a_filter_in_both_of_its_forms() {
     let bench = Bench::new();
     let short = load(&bench, "filter(\"where\", \"brightness > 100\");", &[]).unwrap();
     let long = load(&bench, "filter(\"where\", #{ is: \"brightness > 100\" });", &[]).unwrap();
-    assert_eq!(short.settings.filters, long.settings.filters);
+    assert_eq!(short.settings.view.filters, long.settings.view.filters);
     let with_constant = load(&bench, "const LEAST = 100;\nfilter(\"where\", `brightness > ${LEAST}`);", &[]).unwrap();
-    assert_eq!(short.settings.filters, with_constant.settings.filters);
+    assert_eq!(short.settings.view.filters, with_constant.settings.view.filters);
     let other = load(&bench, "filter(\"where\", \"brightness > 100\");", &["filter.where.is=r > 9"]).unwrap();
-    assert_eq!(other.settings.filters[0].condition.as_deref(), Some("r > 9"));
+    assert_eq!(other.settings.view.filters[0].condition.as_deref(), Some("r > 9"));
 }
 
 #[test]

@@ -13,7 +13,7 @@ use engine::diagnostic::{Diagnostic, Result, SourceText, printable};
 use engine::experiment::{Overrides, Plan};
 use engine::filter::{Catalogue, Sources};
 use engine::learner::Policy;
-use engine::script::Behaviour;
+use engine::script::{Behaviour, ParamValues};
 use engine::world::Layout;
 use insight::store::{policy_from_toml, policy_to_toml, with_policy_texts};
 

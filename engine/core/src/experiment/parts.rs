@@ -60,8 +60,9 @@ impl Parts<'_> {
     fn in_chain(&self, view: &ViewSettings, error: ChainError) -> Box<Diagnostic> {
         let stage = view.place(&format!("filter:{}", error.stage));
         let place = error.parameter.map_or(stage.clone(), |parameter| format!("{stage}.{parameter}"));
+        let condition = view.filters.get(error.stage).and_then(|filter| filter.condition.as_deref());
         match error.within {
-            Some(within) => self.in_condition(*error.error, error.stage, &place, within),
+            Some(within) => self.in_condition(*error.error, condition.unwrap_or(""), &place, within),
             None => self.point(*error.error, &place, "here", None),
         }
     }
@@ -70,12 +71,11 @@ impl Parts<'_> {
     fn in_condition(
         &self,
         error: Diagnostic,
-        stage: usize,
+        condition: &str,
         place: &str,
         (within, label): (Range<usize>, &str),
     ) -> Box<Diagnostic> {
         let source = self.behaviour.source();
-        let condition = self.settings.filters.get(stage).and_then(|filter| filter.condition.as_deref()).unwrap_or("");
         let literal = self.behaviour.place_of(place).map_or(0, |span| span.start + 1);
         if source.text.get(literal..).is_some_and(|text| !condition.is_empty() && text.starts_with(condition)) {
             return Box::new(error.at(source, literal + within.start..literal + within.end, label));

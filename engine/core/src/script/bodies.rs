@@ -1,7 +1,6 @@
 //! The outline of a script: its rules, what stands in its functions, and which names are used at all.
 
 use super::access::{Access, Link};
-use super::guards::is_guard_expr;
 use super::outline::{BeamLoop, Gathers, ScriptOutline, UnusedName};
 use super::params::param_call;
 use super::positions::{body_end, span};

@@ -16,8 +16,7 @@ use super::syntax::{Forms, written_rules};
 use super::tree::{Tree, tree};
 use super::unread::Unread;
 use super::{
-    guards, is_key, measures, memory, names, params, parts, rehearsal, state_parts, stops, success, syntax, top_level,
-    types,
+    guards, is_key, measures, memory, names, parts, rehearsal, state_parts, stops, success, syntax, top_level, types,
 };
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, printable};
 use crate::judge::Look;

@@ -8,7 +8,7 @@ use super::unread::Unread;
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, printable};
 use crate::judge::explain;
 use crate::judge::views::number;
-use crate::settings::{self, PolicySettings, Settings, Value};
+use crate::settings::{self, CONDITION, PolicySettings, Settings, Value};
 use rhai::{AST, ASTNode, Dynamic, Engine, Expr, FnCallExpr, Map, Position, Stmt};
 use std::any::TypeId;
 use std::cell::OnceCell;

@@ -211,8 +211,11 @@ impl Settings {
         if from.world != to.world {
             self.world.clone_from(&to.world);
         }
-        if from.filters != to.filters {
-            self.filters.clone_from(&to.filters);
+        if from.view.filters != to.view.filters {
+            self.view.filters.clone_from(&to.view.filters);
+        }
+        if from.further_views != to.further_views {
+            self.further_views.clone_from(&to.further_views);
         }
         if from.actions != to.actions {
             self.actions.clone_from(&to.actions);

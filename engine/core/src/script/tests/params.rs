@@ -15,7 +15,7 @@ fn parse_with(text: &str, values: &[(&str, f64)]) -> Result<Behaviour, Box<Diagn
 
 /// The reward where the nearest beam is at 0.3 m.
 fn reward(behaviour: &Behaviour) -> f64 {
-    let mut judge = behaviour.judge(0.5, 181).unwrap();
+    let mut judge = behaviour.judge(0.5, super::fan(181)).unwrap();
     judge.facts_mut().ranges_m.fill(0.3);
     judge.calibrate().unwrap();
     judge.judge().unwrap().reward

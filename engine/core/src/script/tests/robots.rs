@@ -3,7 +3,7 @@
 use super::errors::{expect, wrong};
 use super::parse;
 use crate::diagnostic::SourceText;
-use crate::script::Behaviour;
+use crate::script::{Behaviour, ParamValues};
 use crate::settings::{Footprint, Settings};
 
 const RULE: &str = "rule \"a\" when robot.contact => -1 then recover;";
@@ -67,7 +67,9 @@ fn a_robot_that_is_not_there_is_told_with_those_that_are() {
 fn every_mistake_of_a_body_file_is_told_at_its_place_there() {
     let told = |body: &'static str| {
         let script = SourceText::new("x.rhai", format!("robot(\"x\"); laser(#{{ beams: 9 }}); {RULE}"));
-        let wrong = Behaviour::parse_with("x", script, &|_| Ok(Some(SourceText::new("x.toml", body))), &ParamValues::new()).unwrap_err();
+        let wrong =
+            Behaviour::parse_with("x", script, &|_| Ok(Some(SourceText::new("x.toml", body))), &ParamValues::new())
+                .unwrap_err();
         let told = |one: &crate::diagnostic::Diagnostic| {
             let place = one.place.as_ref().unwrap();
             assert_eq!(place.source.path.to_str(), Some("x.toml"));
