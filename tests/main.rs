@@ -30,6 +30,8 @@ mod determinism;
 mod docs;
 /// Every filter that ships keeps the contract, in every form.
 mod filters;
+/// Scripts that were once called a success and are none.
+mod fooled;
 /// One filter gives the same bytes linked in, in a native library and in WebAssembly.
 mod forms;
 /// Every shipped behaviour leaves the bytes that were recorded.

@@ -158,6 +158,9 @@ pub(crate) struct TestArguments {
     /// A folder for the figures and pictures of the test; without it, nothing is written
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Replace a test that stands in that folder
+    #[arg(long, requires = "out")]
+    pub(crate) force: bool,
     /// Run a .pack file that is not signed
     #[arg(long)]
     pub(crate) allow_unsigned: bool,

@@ -8,7 +8,7 @@ use crate::judge::memory::Remembered;
 use crate::judge::rule::CompiledRule;
 use crate::judge::{Judge, RuleText, reach};
 use crate::outcome::Then;
-use crate::settings::{LaserSettings, Settings};
+use crate::settings::{LaserSettings, RunSettings, Settings};
 use crate::verdict::{Endable, Probe, Success, SuccessCondition};
 use std::ops::Range;
 use std::sync::Arc;
@@ -62,10 +62,10 @@ impl Behaviour {
         Self { success, ..self }
     }
 
-    /// What is called success in a world with a lap route or without one, in a test that takes so many seconds.
+    /// What is called success in a world with a lap route or without one, in a test of so many steps.
     #[must_use]
-    pub fn success(&self, has_route: bool, seconds: f64) -> Success {
-        Success::new(&self.success, self.endable, has_route, seconds)
+    pub fn success(&self, has_route: bool, run: &RunSettings) -> Success {
+        Success::new(&self.success, self.endable, has_route, run)
     }
 
     /// The names of its measures, in their order.

@@ -11,13 +11,20 @@ use std::collections::BTreeSet;
 const INSTEAD: &str =
     "variables remember nothing between steps: write fired(\"rule\") or since(\"rule\"), a measure, or stages";
 
-/// Adds each outer variable that a function changes, at the first place: the interpreter would find out only in the step that
-/// comes by there.
+/// Adds each outer variable that a function or a rule changes, at the first place: the interpreter would find out only in the
+/// step that comes by there, or never.
 pub(super) fn check_memory(code: &Code, ast: &AST, mistakes: &mut Mistakes) {
     // A switch is not walked in the same order each time.
     let mut changes: Vec<(usize, Position, String)> = Vec::new();
     ast.clone_functions_only().walk(&mut |path: &[ASTNode<'_>]| {
         if let Some((name, position)) = changed(path).or_else(|| this(path)) {
+            changes.push((offset(&code.source, position), position, name.to_owned()));
+        }
+        true
+    });
+    ast.clone_statements_only().walk(&mut |path: &[ASTNode<'_>]| {
+        let in_rule = path.iter().any(|node| matches!(node, ASTNode::Expr(Expr::Custom(..))));
+        if let Some((name, position)) = changed(path).filter(|_| in_rule) {
             changes.push((offset(&code.source, position), position, name.to_owned()));
         }
         true
@@ -32,7 +39,7 @@ pub(super) fn check_memory(code: &Code, ast: &AST, mistakes: &mut Mistakes) {
         let (message, label, help) = match name.as_str() {
             "this" => ("'this' stands for nothing in a function".to_owned(), "nothing", INSTEAD.to_owned()),
             _ => (
-                format!("'{name}' stands outside of the function: it is the same in every step"),
+                format!("'{name}' stands outside of what changes it: it is the same in every step"),
                 "cannot be changed here",
                 format!("{INSTEAD}; within one step: let own = {name};"),
             ),

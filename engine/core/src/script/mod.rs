@@ -15,6 +15,7 @@ mod measures;
 mod memory;
 mod names;
 mod outline;
+mod own_doing;
 mod parts;
 mod positions;
 mod reader;

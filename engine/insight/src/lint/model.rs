@@ -218,7 +218,7 @@ mod tests {
 
     #[test]
     fn one_lucky_visit_is_not_believed() {
-        let step = |action, reward| TrialStep { state: 0, action, reward, recover: false, next: Some(0) };
+        let step = |action, reward| TrialStep { state: 0, action, reward, recover: false, ending: None, contact: false, next: Some(0) };
         let mut steps = vec![step(0, 0.9); 100];
         steps.push(step(1, 1.0));
         steps.extend(vec![step(2, -1.0); 100]);

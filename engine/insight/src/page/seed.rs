@@ -7,7 +7,7 @@ use super::track::{Moments, ScanShape, Track, TrackSource};
 use engine::diagnostic::Result;
 use engine::experiment::{Ledger, Phase, Plan, Tally};
 use engine::learner::Policy;
-use engine::verdict::{ConditionVerdict, SuccessVerdict, TestFigures};
+use engine::verdict::{BaseLines, ConditionVerdict, SuccessVerdict, TestFigures};
 
 use crate::verdict_words::{figures, headline};
 
@@ -25,8 +25,8 @@ pub struct SeedData<'a> {
     pub policy: Option<&'a Policy>,
     /// The test's figures, once it is done.
     pub test: Option<&'a TestFigures>,
-    /// Those of a robot that knows nothing.
-    pub untrained: Option<&'a TestFigures>,
+    /// What it is held against.
+    pub lines: Option<&'a BaseLines>,
     /// Steps of learning.
     pub learning: &'a Ledger,
     /// Steps of the test.
@@ -142,8 +142,8 @@ impl SeedView {
             test: data.test.cloned(),
             verdict: data
                 .test
-                .zip(data.untrained)
-                .map(|(test, untrained)| VerdictView::from(&plan.success().verdict(test, untrained))),
+                .zip(data.lines)
+                .map(|(test, lines)| VerdictView::from(&plan.success().verdict(test, lines))),
             states_met: data.policy.map_or(0, |policy| policy.rows().iter().flatten().count()),
             states: data.policy.map_or(Ok(Vec::new()), |policy| states(plan, policy, brings_steps))?,
             learning: None,

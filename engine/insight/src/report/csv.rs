@@ -16,10 +16,12 @@ pub struct CurveRow {
 /// The table: `step`, `reinforcement_per_<window>_steps`, then one column for each rule; a missing value is empty.
 #[must_use]
 pub fn curve_csv(window_steps: u64, rules: &[String], rows: &[CurveRow]) -> String {
-    let mut out = format!("step,reinforcement_per_{window_steps}_steps");
+    let own = ["step".to_owned(), format!("reinforcement_per_{window_steps}_steps")];
+    let mut out = own.join(",");
     for rule in rules {
         out.push(',');
-        out.push_str(&quoted(rule));
+        // No two columns have one name.
+        out.push_str(&quoted(&if own.contains(rule) { format!("{rule} (rule)") } else { rule.clone() }));
     }
     out.push('\n');
     for row in rows {
