@@ -8,6 +8,7 @@ mod remembered;
 mod running;
 mod same;
 mod success;
+mod traps;
 mod types;
 mod words;
 

@@ -9,7 +9,7 @@ use crate::diagnostic::{Diagnostic, Mistakes};
 use crate::judge::explain::offset;
 use crate::judge::expression::{Arithmetic, Comparison};
 use crate::judge::fact_table::Fact;
-use crate::judge::functions::FUNCTIONS;
+use crate::judge::functions::{FUNCTIONS, OF_ONE, OF_ONE_FRACTION};
 use rhai::{AST, ASTFlags, ASTNode, Expr, FnCallExpr, Position, Stmt};
 
 /// What a value is.
@@ -77,7 +77,9 @@ impl TypeChecker<'_> {
             }
             Expr::FnCall(call, position) => match call.args.as_slice() {
                 [of] if call.name == "!" && self.kind(of) == Some(Kind::Number) => Some(self.no_flag(of)),
-                [of] if call.name == "-" && self.kind(of) == Some(Kind::Flag) => Some(self.no_number(of)),
+                [of] if self.kind(of) == Some(Kind::Flag) && (call.name == "-" || self.is_of_numbers(call)) => {
+                    Some(self.no_number(of))
+                }
                 [a, b] if let Some(comparison) = Comparison::of(&call.name) => {
                     self.compared(comparison, call, *position, [a, b])
                 }
@@ -142,6 +144,11 @@ impl TypeChecker<'_> {
         };
         let at = offset(&self.code.source, position);
         Some(self.mistake("a division of whole numbers drops the fraction", at..at + 1, "both are whole", help))
+    }
+
+    /// Whether it is one of the engine's functions of one number.
+    fn is_of_numbers(&self, call: &FnCallExpr) -> bool {
+        OF_ONE.iter().chain(OF_ONE_FRACTION).any(|row| row.0 == call.name)
     }
 
     fn is_whole(&self, expr: &Expr) -> bool {

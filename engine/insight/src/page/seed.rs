@@ -45,6 +45,8 @@ pub struct SeedView {
     pub brings_steps: bool,
     /// The first step from which four windows in a row are good.
     pub learned_at: Option<u64>,
+    /// Whether the script says anything by which that can be told.
+    pub tells_learning: bool,
     /// Reinforcement of each window.
     pub curve: Vec<f64>,
     /// What each rule added, window by window; empty for a seed without steps.
@@ -137,6 +139,7 @@ impl SeedView {
             shown_first: false,
             brings_steps: brings_steps || !data.tested.is_empty(),
             learned_at: data.tally.and_then(|tally| plan.success().learned_at(&tally.counts())),
+            tells_learning: plan.success().tells_learning(),
             by_rule: data.tally.map_or_else(Vec::new, |tally| windows.map(|at| by_rule(plan, tally, at)).collect()),
             curve,
             test: data.test.cloned(),

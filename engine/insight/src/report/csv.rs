@@ -65,6 +65,13 @@ mod tests {
     }
 
     #[test]
+    fn a_rule_with_the_name_of_a_column_has_a_column_of_its_own() {
+        let rules = ["step", "reinforcement_per_10_steps"].map(str::to_owned);
+        let heading = "step,reinforcement_per_10_steps,step (rule),reinforcement_per_10_steps (rule)\n";
+        assert_eq!(curve_csv(10, &rules, &[]), heading);
+    }
+
+    #[test]
     fn no_rows_give_the_heading_alone() {
         assert_eq!(curve_csv(10, &[], &[]), "step,reinforcement_per_10_steps\n");
     }

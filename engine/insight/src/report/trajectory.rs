@@ -48,7 +48,8 @@ pub fn trajectories(data: &TrajectoryData<'_>) -> Result<Picture> {
         data.world.draw_movers(&mut sheet, &plot, path.steps());
         route::draw_path(&mut sheet, &plot, path);
     }
-    explain(&mut sheet, data.world);
+    let goals = data.panels.iter().any(|(_, path)| !path.goals.is_empty());
+    explain(&mut sheet, data.world, goals);
     sheet.finish(&shows(data.world, data.panels))
 }
 
@@ -56,7 +57,8 @@ pub fn trajectories(data: &TrajectoryData<'_>) -> Result<Picture> {
 fn shows(world: &WorldPlan<'_>, panels: &[(&str, &Trail)]) -> String {
     let panel = |(name, path): &(&str, &Trail)| {
         let (steps, failures) = (path.steps(), path.failures.len());
-        format!("{name}: path of the robot over {steps} steps, failures: {failures}")
+        let goals = if path.goals.is_empty() { String::new() } else { format!(", goals: {}", path.goals.len()) };
+        format!("{name}: path of the robot over {steps} steps, failures: {failures}{goals}")
     };
     let movers = world.movers.iter().map(|mover| format!("mover: {}", mover.name));
     panels.iter().map(panel).chain(movers).collect::<Vec<_>>().join("; ")
@@ -122,7 +124,7 @@ impl FloorPlan {
     }
 }
 
-fn explain(sheet: &mut Sheet, world: &WorldPlan<'_>) {
+fn explain(sheet: &mut Sheet, world: &WorldPlan<'_>, goals: bool) {
     let middle = |from: Spot, to: Spot| ((from.0 + to.0) / 2, (from.1 + to.1) / 2);
     let end = spot(WIDTH_PX - MARGIN_PX, sheet.height_px - 28.0);
     let time = |sheet: &mut Sheet, from: Spot, to: Spot| {
@@ -134,11 +136,15 @@ fn explain(sheet: &mut Sheet, world: &WorldPlan<'_>) {
     };
     let start = |sheet: &mut Sheet, from: Spot, to: Spot| sheet.disc(middle(from, to), 6.0, route::shade(1.0));
     let failure = |sheet: &mut Sheet, from: Spot, to: Spot| sheet.cross(middle(from, to), 5.0, VERMILION);
+    let goal = |sheet: &mut Sheet, from: Spot, to: Spot| route::draw_goal(sheet, middle(from, to));
     let mut all = vec![
         LegendEntry { sign: &start, words: "start" },
         LegendEntry { sign: &time, words: "way, light early to dark late" },
         LegendEntry { sign: &failure, words: "failure" },
     ];
+    if goals {
+        all.push(LegendEntry { sign: &goal, words: "goal" });
+    }
     if world.lap.is_some() {
         let words = if world.lap_is_driven() { "intended lap, driven by the mover too" } else { "intended lap" };
         all.push(LegendEntry { sign: &plan::lap_sign, words });

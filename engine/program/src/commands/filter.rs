@@ -255,6 +255,7 @@ fn print(console: &mut Console, seen: &SeenImage) -> std::result::Result<(), Con
     let met = match seen.visits {
         None => String::new(),
         Some(0) => ", new".to_owned(),
+        Some(1) => ", met once".to_owned(),
         Some(visits) => format!(", met {visits} times"),
     };
     console.line(&format!("{}: state {}, columns {}{met}", printable(&seen.file), seen.state, digits.join(" ")))
