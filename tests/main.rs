@@ -36,6 +36,8 @@ mod fooled;
 mod forms;
 /// Every shipped behaviour leaves the bytes that were recorded.
 mod golden;
+/// Folders of runs and tests: nothing written over, tagged away or forged without a word.
+mod kept;
 /// Every step kept, and brought back by its actions.
 mod ledger;
 /// Seeded mistakes and what is found in them; scripts that ship; ways to cheat.

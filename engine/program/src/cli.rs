@@ -250,7 +250,7 @@ pub(crate) struct ReproduceArguments {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Exit status: 0 done; 1 too many new states; 2 usage; 3 bad script or image; 6 files and disk; \
+    after_help = "Exit status: 0 done; 1 too many new states, or one state for nearly all of five images or more; 2 usage; 3 bad script or image; 6 files and disk; \
                         7 a stored run that does not fit."
 )]
 pub(crate) struct FilterArguments {

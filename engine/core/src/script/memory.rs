@@ -22,13 +22,7 @@ pub(super) fn check_memory(code: &Code, ast: &AST, mistakes: &mut Mistakes) {
         }
         true
     });
-    ast.clone_statements_only().walk(&mut |path: &[ASTNode<'_>]| {
-        let in_rule = path.iter().any(|node| matches!(node, ASTNode::Expr(Expr::Custom(..))));
-        if let Some((name, position)) = changed(path).filter(|_| in_rule) {
-            changes.push((offset(&code.source, position), position, name.to_owned()));
-        }
-        true
-    });
+    changes.extend(in_rules(code, ast));
     changes.sort_unstable();
     let mut told = BTreeSet::new();
     for (_, position, name) in changes {
@@ -46,6 +40,30 @@ pub(super) fn check_memory(code: &Code, ast: &AST, mistakes: &mut Mistakes) {
         };
         mistakes.add(mistake(&code.source, "E-SCRIPT-MEMORY", position, message, label).help(help));
     }
+}
+
+/// What rules change of the variables of the top level, those left out whose names a rule gives to variables of its own.
+fn in_rules(code: &Code, ast: &AST) -> Vec<(usize, Position, String)> {
+    let (mut outer, mut own, mut changes) = (BTreeSet::new(), BTreeSet::new(), Vec::new());
+    ast.clone_statements_only().walk(&mut |path: &[ASTNode<'_>]| {
+        let in_rule = path.iter().any(|node| matches!(node, ASTNode::Expr(Expr::Custom(..))));
+        match path.last() {
+            Some(ASTNode::Stmt(Stmt::Var(variable, ..))) => {
+                let names = if in_rule { &mut own } else { &mut outer };
+                names.insert(variable.0.name.to_string());
+            }
+            Some(ASTNode::Stmt(Stmt::Assignment(assignment))) if in_rule => {
+                changes
+                    .extend(Access::of(&assignment.1.lhs).map(|access| {
+                        (offset(&code.source, access.position), access.position, access.root.to_owned())
+                    }));
+            }
+            _ => {}
+        }
+        true
+    });
+    changes.retain(|(_, _, name)| outer.contains(name) && !own.contains(name));
+    changes
 }
 
 /// The outer variable that a statement or a call changes.

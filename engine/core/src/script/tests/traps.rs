@@ -29,10 +29,10 @@ fn whole_numbers_are_not_divided_by_whole_numbers() {
 }
 
 #[test]
-fn a_truth_value_is_known_through_measures_constants_and_the_step_before() {
-    for condition in ["previous.robot.contact > 0", "c > 0.5", "HIT > 0"] {
+fn a_truth_value_is_known_through_measures_and_the_step_before() {
+    for condition in ["previous.robot.contact > 0", "c > 0.5"] {
         let marked = &condition[condition.find('>').unwrap()..];
-        let text = format!("const HIT = true; measure c = robot.contact; rule \"a\" when {condition} => -1;");
+        let text = format!("measure c = robot.contact; rule \"a\" when {condition} => -1;");
         expect(&text, "E-SCRIPT-TYPE", marked, "");
     }
 }
