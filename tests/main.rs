@@ -30,10 +30,14 @@ mod determinism;
 mod docs;
 /// Every filter that ships keeps the contract, in every form.
 mod filters;
+/// Scripts that were once called a success and are none.
+mod fooled;
 /// One filter gives the same bytes linked in, in a native library and in WebAssembly.
 mod forms;
 /// Every shipped behaviour leaves the bytes that were recorded.
 mod golden;
+/// Folders of runs and tests: nothing written over, tagged away or forged without a word.
+mod kept;
 /// Every step kept, and brought back by its actions.
 mod ledger;
 /// Seeded mistakes and what is found in them; scripts that ship; ways to cheat.

@@ -4,11 +4,13 @@ use std::sync::atomic::AtomicBool;
 
 use engine::allowed::Allowed;
 use engine::diagnostic::{Result, SourceText};
-use engine::experiment::{Choice, Chooser, Decider, Overrides, Plan, in_parallel, test_choices, test_untrained};
+use engine::experiment::{
+    Choice, Chooser, Decider, Overrides, Plan, base_lines, in_parallel, test_choices, test_untrained,
+};
 use engine::geometry::Twist;
 use engine::learner::Policy;
 use engine::script::Behaviour;
-use engine::verdict::{Because, SuccessVerdict};
+use engine::verdict::{BaseLines, Because, SuccessVerdict};
 
 use crate::support::root;
 
@@ -86,11 +88,11 @@ fn written(text: &str) -> Plan {
 /// The verdict on whoever does not look.
 fn of_cheat(plan: &Plan, cheat: &Cheat) -> SuccessVerdict {
     let never = AtomicBool::new(false);
-    let untrained = test_untrained(plan, 7, &never).unwrap();
+    let lines = BaseLines::of_untrained(test_untrained(plan, 7, &never).unwrap());
     let mut plan = plan.clone();
     plan.settings.actions = cheat.motions.iter().map(|(linear, angular)| Twist::new(*linear, *angular)).collect();
     let tested = test_choices(&plan, 7, &never, &mut Blind(cheat.choice, 0), &mut ()).unwrap();
-    plan.success().verdict(&tested.figures, &untrained)
+    plan.success().verdict(&tested.figures, &lines)
 }
 
 /// The verdict on a policy that was never trained.
@@ -98,7 +100,7 @@ fn of_untrained(plan: &Plan, seed: u64) -> SuccessVerdict {
     let never = AtomicBool::new(false);
     let decider = Decider::Learned(Policy::new(plan.settings.actions.len(), Vec::new()));
     let tested = decider.test(plan, seed, &never, &mut ()).unwrap();
-    plan.success().verdict(&tested.figures, &test_untrained(plan, seed, &never).unwrap())
+    plan.success().verdict(&tested.figures, &base_lines(plan, seed, &tested, &never).unwrap())
 }
 
 #[test]

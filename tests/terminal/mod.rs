@@ -48,12 +48,12 @@ fn put(board: &Board, number: u64, plan: Plan, tests: bool) {
         let learned = learn_into(&plan, seed, &never, &|_| (), &mut learning).unwrap();
         if !tests {
             let (learned, learning) = (Some(Arc::new(learned)), Arc::new(learning));
-            return WatchedSeed { seed, learned, learning, test: None, untrained: None, tested: Ledger::off() };
+            return WatchedSeed { seed, learned, learning, test: None, lines: None, tested: Ledger::off() };
         }
         let mut tested = Ledger::new(&plan, plan.settings.run.test_steps);
         let test = test_and_watch(&plan, &learned.policy, seed, &never, &mut tested).unwrap();
         let (learned, learning) = (Some(Arc::new(learned)), Arc::new(learning));
-        WatchedSeed { seed, learned, learning, test: Some(test.figures), untrained: None, tested }
+        WatchedSeed { seed, learned, learning, test: Some(test.figures), lines: None, tested }
     };
     let seeds = vec![seed(1), seed(2)];
     let data: Vec<_> = seeds.iter().map(WatchedSeed::data).collect();

@@ -67,7 +67,8 @@ fn look(folder: &Path, depth: usize, runs: &mut Vec<ShelvedRun>) -> Result<()> {
     for entry in entries.flatten() {
         // A link may lead anywhere, also in circles.
         if depth < MOST_DEPTH && entry.file_type().is_ok_and(|kind| kind.is_dir()) {
-            look(&entry.path(), depth + 1, runs)?;
+            // Somebody else's folder among them is no reason to see none.
+            let _ = look(&entry.path(), depth + 1, runs);
         }
     }
     Ok(())
@@ -115,11 +116,13 @@ impl ShelvedRun {
             });
         }
         let Ok(many) = serde_json::from_str::<Spread>(&summary.text) else { return Ok(run) };
+        // As the seeds say, whatever stands above them.
+        let successes = many.seeds.iter().filter(|seed| seed.verdict.is_success()).count();
         let told = many.seeds.iter().any(|seed| seed.verdict.success.is_some());
         Ok(Self {
             seeds: many.seeds.len(),
-            successes: many.successes,
-            success: told.then_some(2 * many.successes > many.seeds.len()),
+            successes,
+            success: told.then_some(2 * successes > many.seeds.len()),
             failures_per_1000: Some(many.median.failures_per_1000),
             behaviour: Some(many.behaviour),
             world: Some(many.world),
@@ -168,9 +171,16 @@ fn bytes_under(folder: &Path) -> u64 {
 /// Puts a tag on a run, or takes it off.
 ///
 /// # Errors
-/// `E-RUN-FILE` if the folder is no run; `E-RUN-TAG` if the tag is empty, longer than 60 characters or of more than one line.
+/// `E-RUN-FILE` if the folder is no run; `E-RUN-TAG` if the tag is empty, longer than 60 characters or of more than one line, or
+/// if the folder stands in another run, which would go with all that is in it.
 pub fn tag_run(folder: &Path, tag: Option<&str>) -> Result<()> {
     read_stored(&folder.join(RUN_FILE))?;
+    let whole = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+    if let Some(above) = whole.ancestors().skip(1).take(MOST_DEPTH).find(|above| above.join(RUN_FILE).is_file()) {
+        let shown = |path: &Path| printable(&path.display().to_string());
+        let message = format!("'{}' is a part of the run '{}'", shown(folder), shown(above));
+        return Diagnostic::new("E-RUN-TAG", message).help(format!("tag that run: {}", shown(above))).fail();
+    }
     let path = folder.join(TAG_FILE);
     let Some(tag) = tag else {
         return match std::fs::remove_file(&path) {
@@ -231,6 +241,9 @@ mod tests {
             assert_eq!(tag_run(&run, Some(bad)).unwrap_err().code, "E-RUN-TAG");
         }
         assert_eq!(tag_run(place.path(), Some("x")).unwrap_err().code, "E-RUN-FILE");
+        // It would be removed with the run that it is a part of.
+        let wrong = tag_run(&place.path().join("line/1-30/1"), Some("best")).unwrap_err();
+        assert!(wrong.code == "E-RUN-TAG" && wrong.message.contains("1-30"), "{wrong:?}");
     }
 
     #[test]

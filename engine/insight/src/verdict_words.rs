@@ -24,6 +24,10 @@ pub fn headline(verdict: &SuccessVerdict) -> String {
         Because::UntrainedToo => {
             "cannot be told: a robot that knows nothing meets every condition too; ask for what it must do".to_owned()
         }
+        Because::BlindToo => {
+            "cannot be told: a robot that does not look meets every condition too; ask for what it must see".to_owned()
+        }
+        Because::BrokenOff => "cannot be told: the test was broken off; test it again: engine test RUN".to_owned(),
         Because::RewardOnly => {
             format!("cannot be told from rewards alone, which are the script's own word; write: {WRITE}")
         }
@@ -59,7 +63,10 @@ pub fn spread_of_figures(condition: &ConditionSpread) -> String {
 #[must_use]
 pub fn learned(plan_tells: bool, summary: &Summary) -> String {
     match summary.learned_at {
-        Some(0) => "from the start: nothing had to be learned".to_owned(),
+        Some(0) if summary.verdict.why == Because::UntrainedToo => {
+            "from the start: nothing had to be learned".to_owned()
+        }
+        Some(0) => "within the first window of 400 steps".to_owned(),
         Some(step) => format!("at step {step} of {}", summary.steps),
         None if !plan_tells => "cannot be told: no failure and no goal can happen".to_owned(),
         None => format!("not within {} steps", summary.steps),

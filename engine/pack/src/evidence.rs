@@ -167,7 +167,7 @@ fn proof(plan: &Plan, seed: u64, stop: &AtomicBool, report: &(dyn Fn(Progress) +
 
 fn claim(summary: Summary, tested: &TestRun) -> SeedClaim {
     let Summary { seed, state_hash, states_seen, learned_at, reinforcement_per_400, test: figures, .. } = summary;
-    let (success, untrained) = (summary.verdict.success, summary.untrained.failures_per_1000);
+    let (success, untrained) = (summary.verdict.success, summary.base_lines.untrained.failures_per_1000);
     SeedClaim {
         seed,
         state_hash,

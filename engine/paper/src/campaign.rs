@@ -16,7 +16,7 @@ use engine::script::Behaviour;
 use engine::verdict::TestFigures;
 
 /// Seeds, steps of learning and steps of a test in a quick check.
-const QUICK: (u64, u64, u64) = (2, 800, 200);
+pub(super) const QUICK: (u64, u64, u64) = (2, 800, 200);
 
 /// What is asked for.
 #[derive(Debug, Clone)]

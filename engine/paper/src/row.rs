@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use insight::words::with_commas;
 
-use super::campaign::{JobResult, Measured, Options};
+use super::campaign::{JobResult, Measured, Options, QUICK};
 use super::claims::Claim;
 use super::commands::command;
 use super::job::{Learn, Metric, Trial};
@@ -77,6 +77,8 @@ pub struct Numbers {
 #[must_use]
 pub fn rows(measured: &Measured) -> Reproduction {
     let Options { seed, seeds, quick, .. } = measured.options;
+    // As many as were really run.
+    let seeds = if quick { seeds.min(QUICK.0) } else { seeds };
     Reproduction { seed, seeds, quick, rows: measured.options.claims().map(|claim| row(claim, measured)).collect() }
 }
 

@@ -140,6 +140,10 @@ pub(crate) struct RunArguments {
 }
 
 #[derive(Debug, Args)]
+#[command(
+    after_help = "Exit status: 0 a success; 1 not good enough; 2 usage; 3 bad world or setting; 4 a limit stopped it; 5 refused \
+                        for trust; 6 files and disk; 7 the stored run is damaged or does not fit; 130 stopped by Ctrl-C."
+)]
 pub(crate) struct TestArguments {
     /// The folder of a run, such as runs/wall/1; or a .pack file or an installed pack's name, for the policy that it carries
     pub(crate) run: PathBuf,
@@ -158,6 +162,9 @@ pub(crate) struct TestArguments {
     /// A folder for the figures and pictures of the test; without it, nothing is written
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Replace a test that stands in that folder
+    #[arg(long, requires = "out")]
+    pub(crate) force: bool,
     /// Run a .pack file that is not signed
     #[arg(long)]
     pub(crate) allow_unsigned: bool,
@@ -210,6 +217,7 @@ pub(crate) struct BenchArguments {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = "Exit status: 0 done; 2 usage; 6 files and disk; 130 stopped by Ctrl-C.")]
 pub(crate) struct ReproduceArguments {
     /// How many seeds, from --seed on; long jobs take fewer and say so
     #[arg(long, default_value = "30", value_parser = count, allow_hyphen_values = true, value_name = "N")]
@@ -242,7 +250,7 @@ pub(crate) struct ReproduceArguments {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Exit status: 0 done; 1 too many new states; 2 usage; 3 bad script or image; 6 files and disk; \
+    after_help = "Exit status: 0 done; 1 too many new states, or one state for nearly all of five images or more; 2 usage; 3 bad script or image; 6 files and disk; \
                         7 a stored run that does not fit."
 )]
 pub(crate) struct FilterArguments {

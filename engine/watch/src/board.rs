@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use engine::diagnostic::{Diagnostic, Result, Severity};
 use engine::experiment::{Learned, Ledger, Plan};
-use engine::verdict::TestFigures;
+use engine::verdict::{BaseLines, TestFigures};
 use insight::lint::Report;
 use insight::page::{CheckView, Document, FindingView, SeedData, SeedView};
 use serde::Serialize;
@@ -22,8 +22,8 @@ pub struct WatchedSeed {
     pub learning: Arc<Ledger>,
     /// The test's figures, once it is done.
     pub test: Option<TestFigures>,
-    /// Those of a robot that knows nothing.
-    pub untrained: Option<TestFigures>,
+    /// What it is held against.
+    pub lines: Option<BaseLines>,
     /// Steps of the test.
     pub tested: Ledger,
 }
@@ -44,7 +44,7 @@ impl WatchedSeed {
             tally: learned.map(|learned| &learned.tally),
             policy: learned.map(|learned| &learned.policy),
             test: self.test.as_ref(),
-            untrained: self.untrained.as_ref(),
+            lines: self.lines.as_ref(),
             learning: &self.learning,
             tested: &self.tested,
         }

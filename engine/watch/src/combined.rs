@@ -30,9 +30,9 @@ pub(super) fn retest(desk: &Desk, plan: Plan, stop: &AtomicBool, files: &Mutex<F
     desk.board.working(&format!("testing {} policies as one, {count}, {steps} steps each", plan.members.len()));
     let room = MOST_LEDGER_BYTES / (seeds.len() * RecordShape::of(&plan).bytes()).max(1) as u64;
     let tested = in_parallel(seeds, desk.settings.threads, |seed| {
-        let SeedTest { run, untrained, kept } = test_seed(&plan, seed, None, room, stop)?;
-        let (learning, untrained) = (Arc::new(Ledger::off()), Some(untrained));
-        Ok(WatchedSeed { seed, learned: None, learning, test: Some(run.figures), untrained, tested: kept })
+        let SeedTest { run, lines, kept } = test_seed(&plan, seed, None, room, stop)?;
+        let (learning, lines) = (Arc::new(Ledger::off()), Some(lines));
+        Ok(WatchedSeed { seed, learned: None, learning, test: Some(run.figures), lines, tested: kept })
     })?;
     if stop.load(Ordering::Relaxed) {
         return Ok(());

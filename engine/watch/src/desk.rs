@@ -6,10 +6,10 @@ use std::sync::atomic::AtomicBool;
 
 use super::board::{Board, SavedRun, WatchedSeed};
 use engine::diagnostic::{Diagnostic, Result};
-use engine::experiment::{Decider, Learned, Ledger, Overrides, Plan, TestRun, test_untrained};
+use engine::experiment::{Decider, Learned, Ledger, Overrides, Plan, TestRun, base_lines};
 use engine::filter::Catalogue;
 use engine::learner::Carry;
-use engine::verdict::TestFigures;
+use engine::verdict::BaseLines;
 use insight::page::{Document, Moments};
 
 /// Called with every run that was learned and tested, its tests, and the seconds that both took.
@@ -61,10 +61,10 @@ impl Desk {
     }
 }
 
-/// A test, with what a robot that knows nothing does in it, and the steps that were kept.
+/// A test, with its base lines, and the steps that were kept.
 pub(super) struct SeedTest {
     pub run: TestRun,
-    pub untrained: TestFigures,
+    pub lines: BaseLines,
     pub kept: Ledger,
 }
 
@@ -78,5 +78,6 @@ pub(super) fn test_seed(
 ) -> Result<SeedTest> {
     let mut kept = Ledger::new(plan, plan.settings.run.test_steps.min(room));
     let run = Decider::of(learned).test(plan, seed, stop, &mut kept)?;
-    Ok(SeedTest { run, untrained: test_untrained(plan, seed, stop)?, kept })
+    let lines = base_lines(plan, seed, &run, stop)?;
+    Ok(SeedTest { run, lines, kept })
 }

@@ -205,7 +205,7 @@ impl Relearner {
             return Ok(());
         }
         let mut tests = Vec::new();
-        let seeds = run.seeds.iter().zip(tested).map(|(seed, SeedTest { run: test, untrained, kept })| {
+        let seeds = run.seeds.iter().zip(tested).map(|(seed, SeedTest { run: test, lines, kept })| {
             let figures = test.figures.clone();
             tests.push(test);
             WatchedSeed {
@@ -213,7 +213,7 @@ impl Relearner {
                 learned: seed.learned.clone(),
                 learning: Arc::clone(&seed.learning),
                 test: Some(figures),
-                untrained: Some(untrained),
+                lines: Some(lines),
                 tested: kept,
             }
         });

@@ -140,7 +140,7 @@ impl Session {
                 learned: Some(Arc::new(learned)),
                 learning,
                 test: None,
-                untrained: None,
+                lines: None,
                 tested: Ledger::off(),
             })
         };

@@ -46,6 +46,8 @@ pub(super) fn figures(
         off_route: along.map(|along| along.off_steps as f64 / steps.max(1) as f64),
         route_offset_m: along.map(|along| along.offsets_m / steps.max(1) as f64),
         metres_per_failure: net_route_m.map_or(distance_m, f64::abs) / (endings.failures + 1) as f64,
+        metres_per_intervention: net_route_m.map_or(distance_m, f64::abs)
+            / (endings.failures + endings.restarts + 1) as f64,
         contacts: tally.contacts(),
         forbidden_per_1000: plan.behaviour.guards().next().map(|_| per_1000(tally.guarded() as f64)),
         mean_speed: distance_m / seconds,

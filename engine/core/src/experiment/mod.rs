@@ -2,6 +2,7 @@
 //!
 //! Nothing here prints, reads a clock or writes a file.
 
+mod base_lines;
 mod certainty;
 mod changes;
 mod choosers;
@@ -34,8 +35,8 @@ mod tally;
 mod testing;
 mod trail;
 mod truth;
-mod untrained;
 
+pub use base_lines::{base_lines, test_untrained};
 pub use certainty::CertaintyGrid;
 pub use choosers::{ByState, Frozen, Learns};
 use choosers::{Recorded, Together};
@@ -61,6 +62,5 @@ pub use summary::{ConditionSpread, FigureSpread, Spread, Summary};
 pub use tally::Tally;
 pub use testing::{CombinationTest, Decider, TestRun, frozen, test, test_and_watch, test_choices, test_robot};
 pub use trail::Trail;
-pub use untrained::test_untrained;
 
 pub use crate::verdict::WINDOW_STEPS;

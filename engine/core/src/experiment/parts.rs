@@ -58,6 +58,10 @@ impl Parts<'_> {
     }
 
     fn in_chain(&self, view: &ViewSettings, error: ChainError) -> Box<Diagnostic> {
+        // What --set changed does not stand in the script.
+        if self.behaviour.settings().views().all(|own| own.filters != view.filters) {
+            return error.error;
+        }
         let stage = view.place(&format!("filter:{}", error.stage));
         let place = error.parameter.map_or(stage.clone(), |parameter| format!("{stage}.{parameter}"));
         let condition = view.filters.get(error.stage).and_then(|filter| filter.condition.as_deref());

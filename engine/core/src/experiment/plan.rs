@@ -253,7 +253,7 @@ impl Plan {
     #[must_use]
     pub fn success(&self) -> Success {
         let run = &self.settings.run;
-        self.behaviour.success(self.layout.lap.is_some(), run.test_steps as f64 * run.period_s)
+        self.behaviour.success(self.layout.lap.is_some(), run)
     }
 
     /// The plan with the policies that its script combines.

@@ -2,8 +2,8 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::{BrokenOff, Decider, Learned, Plan, Progress, RunLog, Summary, TestRun, learn_into, test_untrained};
-use crate::verdict::TestFigures;
+use super::{BrokenOff, Decider, Learned, Plan, Progress, RunLog, Summary, TestRun, base_lines, learn_into};
+use crate::verdict::BaseLines;
 
 /// What one seed leaves.
 #[derive(Debug, Clone)]
@@ -33,25 +33,25 @@ pub fn run_seed(
         Ok(tested) => tested,
         Err(error) => return Err(Box::new(BrokenOff { error, learned })),
     };
-    match test_untrained(plan, seed, stop) {
-        Ok(untrained) => Ok(SeedRun::new(plan, seed, learned, tested, &untrained, log)),
+    match base_lines(plan, seed, &tested, stop) {
+        Ok(lines) => Ok(SeedRun::new(plan, seed, learned, tested, &lines, log)),
         Err(error) => Err(Box::new(BrokenOff { error, learned })),
     }
 }
 
 impl SeedRun {
-    /// What was learned and tested elsewhere, a piece at a time, with the test of a robot that knows nothing and the steps that
-    /// were kept.
+    /// What was learned and tested elsewhere, a piece at a time, with the base lines of its test and the steps that were
+    /// kept.
     #[must_use]
     pub fn new(
         plan: &Plan,
         seed: u64,
         learned: Option<Learned>,
         tested: TestRun,
-        untrained: &TestFigures,
+        lines: &BaseLines,
         log: &RunLog,
     ) -> Self {
-        let mut summary = Summary::new(plan, seed, learned.as_ref(), &tested, untrained);
+        let mut summary = Summary::new(plan, seed, learned.as_ref(), &tested, lines);
         summary.log_sha256 = log.is_kept().then(|| log.sha256());
         Self { learned, tested, summary }
     }

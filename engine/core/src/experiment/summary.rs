@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{CombinationFigures, Learned, Plan, Tally, TestRun};
 use crate::stats::Sorted;
-use crate::verdict::{ConditionVerdict, FigureVerdict, RuleTotal, SuccessVerdict, TestFigures};
+use crate::verdict::{BaseLines, ConditionVerdict, FigureVerdict, RuleTotal, SuccessVerdict, TestFigures};
 
 /// One seed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -32,8 +32,9 @@ pub struct Summary {
     pub verdict: SuccessVerdict,
     /// The frozen policy's test.
     pub test: TestFigures,
-    /// The test of a robot that knows nothing: of 2,000 steps at most.
-    pub untrained: TestFigures,
+    /// The same test of robots that know nothing, or do not look.
+    #[serde(flatten)]
+    pub base_lines: BaseLines,
     /// SHA-256 over every step of learning and the learned table.
     pub state_hash: String,
     /// SHA-256 over the records of the log, as its last digest; absent if none was kept.
@@ -51,7 +52,7 @@ impl Summary {
     /// The figures of one seed; nothing was learned by a behaviour that combines policies. The log's digest and how long
     /// it took are not known here.
     #[must_use]
-    pub fn new(plan: &Plan, seed: u64, learned: Option<&Learned>, tested: &TestRun, untrained: &TestFigures) -> Self {
+    pub fn new(plan: &Plan, seed: u64, learned: Option<&Learned>, tested: &TestRun, lines: &BaseLines) -> Self {
         let test = tested.figures.clone();
         let curve = learned.map_or_else(Vec::new, |learned| learned.tally.curve());
         let steps = learned.map_or(0, |learned| learned.steps);
@@ -73,8 +74,8 @@ impl Summary {
             interrupted: steps < wanted || test.steps < plan.settings.run.test_steps,
             state_hash: learned.map_or(&tested.state_hash, |learned| &learned.state_hash).clone(),
             log_sha256: None,
-            verdict: success.verdict(&test, untrained),
-            untrained: untrained.clone(),
+            verdict: success.verdict(&test, lines),
+            base_lines: lines.clone(),
             combination: tested.combination.as_ref().map(|combination| combination.figures.clone()),
             test,
         }

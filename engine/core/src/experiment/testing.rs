@@ -41,6 +41,8 @@ pub struct TestRun {
     pub snapshot: Snapshot,
     /// What was counted.
     pub tally: Tally,
+    /// How often each action was chosen.
+    pub chosen: Vec<u64>,
     /// Hash over every step, 64 hexadecimal digits.
     pub state_hash: String,
     /// Of several policies as one: who decided, and where they disagreed.
@@ -170,7 +172,8 @@ pub fn test_robot<R: Robot>(
     let tally = Tally::new(plan.behaviour.rules().len(), run.test_steps);
     let goals_steps = Vec::with_capacity(run.test_steps.min(MOST_GOALS) as usize);
     let (mut probes, mut staged) = (Probes::new(plan), Staged::new(plan));
-    let mut counts = Counts { tally, attempt_steps: 0, goals_steps, stop };
+    let chosen = vec![0; plan.settings.actions.len()];
+    let mut counts = Counts { tally, chosen, attempt_steps: 0, goals_steps, stop };
     let mut observers =
         (&mut hash, ((&mut truth, also), ((&mut trail, (&mut probes, &mut staged)), (&mut glimpse, &mut counts))));
     let steps = drive(cycle, chooser, &mut observers, run.test_steps)?;
@@ -178,12 +181,15 @@ pub fn test_robot<R: Robot>(
         figures(plan, steps, &counts.tally, &counts.goals_steps, truth.as_ref(), probes.finish(), staged.finish());
     let snapshot = glimpse.taken.unwrap_or_else(|| Snapshot::of(cycle));
     let (trail, state_hash) = (trail.finish(), hash.finish());
-    Ok(TestRun { figures, trail, snapshot, tally: counts.tally, state_hash, combination: None })
+    let Counts { tally, chosen, .. } = counts;
+    Ok(TestRun { figures, trail, snapshot, tally, chosen, state_hash, combination: None })
 }
 
 /// Counts, and looks at the end of every window whether to stop.
 struct Counts<'a> {
     tally: Tally,
+    /// By action: how often it was chosen.
+    chosen: Vec<u64>,
     /// Steps of the present attempt, and of each that reached its goal.
     attempt_steps: u32,
     goals_steps: Vec<u32>,
@@ -193,6 +199,9 @@ struct Counts<'a> {
 impl<R: Robot> Observer<R> for Counts<'_> {
     fn stepped(&mut self, cycle: &Cycle<R>, step: &Step) -> ControlFlow<()> {
         self.attempt_steps += 1;
+        if let Some(count) = self.chosen.get_mut(step.action) {
+            *count += 1;
+        }
         if let Some(ending) = step.ending() {
             let steps = std::mem::take(&mut self.attempt_steps);
             if ending == Ending::Goal && self.goals_steps.len() < self.goals_steps.capacity() {

@@ -7,15 +7,17 @@ use crate::geometry::Pose;
 use crate::outcome::Ending;
 use crate::robot::Robot;
 
-/// A path: legs between recoveries, and where it failed.
+/// A path: legs between recoveries, and where it failed and reached its goals.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Trail {
     /// Places in the order of time, metres; a new leg begins after each recovery.
     pub legs: Vec<Vec<[f32; 2]>>,
-    /// Where the script asked for recovery.
+    /// Where attempts failed.
     pub failures: Vec<[f32; 2]>,
     /// Where the robot stands at the end, if anything knows.
     pub last: Option<Pose>,
+    /// Where they reached their goals.
+    pub goals: Vec<[f32; 2]>,
 }
 
 impl Trail {
@@ -38,7 +40,7 @@ impl Recorder {
     pub(super) fn new(steps: u64, robot: &impl Robot) -> Self {
         let mut leg = Vec::with_capacity(steps as usize + 1);
         leg.extend(place(robot));
-        Self { trail: Trail { legs: vec![leg], failures: Vec::new(), last: None }, left: steps }
+        Self { trail: Trail { legs: vec![leg], ..Trail::default() }, left: steps }
     }
 
     pub(super) fn finish(self) -> Trail {
@@ -56,8 +58,10 @@ impl<R: Robot> Observer<R> for Recorder {
             if let Some(leg) = self.trail.legs.last_mut() {
                 leg.push(place);
             }
-            if step.ending() == Some(Ending::Failure) {
-                self.trail.failures.push(place);
+            match step.ending() {
+                Some(Ending::Failure) => self.trail.failures.push(place),
+                Some(Ending::Goal) => self.trail.goals.push(place),
+                _ => {}
             }
         }
         self.left = self.left.saturating_sub(1);

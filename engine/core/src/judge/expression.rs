@@ -82,6 +82,8 @@ pub(crate) enum Number {
     Excess(usize, usize, usize),
     /// 1 for true, 0 for false.
     Truth(Box<Flag>),
+    /// The first where it holds, else the second.
+    Choose(Box<Flag>, Box<[Number; 2]>),
     /// A number of the step before.
     Before(Box<Number>),
     /// What was worked out before the rules: a measure or a window.
@@ -164,6 +166,7 @@ impl Number {
             }
             Self::Hits(span) => facts::count_below(span.ranges_m(inputs.facts), inputs.facts.laser_range_m.1) as f64,
             Self::Truth(flag) => f64::from(u8::from(flag.holds(inputs))),
+            Self::Choose(flag, pair) => pair[usize::from(!flag.holds(inputs))].value(inputs),
             Self::Before(of) => of.value(inputs.before()),
             Self::Remembered(index) => inputs.memory.value(*index),
             Self::Fired(rule) => inputs.memory.fired(*rule),

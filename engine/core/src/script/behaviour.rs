@@ -11,7 +11,7 @@ use crate::judge::memory::Remembered;
 use crate::judge::rule::CompiledRule;
 use crate::judge::{Judge, RuleText, reach};
 use crate::outcome::Then;
-use crate::settings::{LaserSettings, ScanFan, Settings};
+use crate::settings::{LaserSettings, RunSettings, ScanFan, Settings};
 use crate::verdict::{Endable, Probe, Success, SuccessCondition};
 use std::ops::Range;
 use std::sync::Arc;
@@ -104,10 +104,10 @@ impl Behaviour {
         self.params.iter().map(|param| (param.name.clone(), param.value)).collect()
     }
 
-    /// What is called success in a world with a lap route or without one, in a test that takes so many seconds.
+    /// What is called success in a world with a lap route or without one, in a test of so many steps.
     #[must_use]
-    pub fn success(&self, has_route: bool, seconds: f64) -> Success {
-        Success::new(&self.success, self.endable, has_route, seconds)
+    pub fn success(&self, has_route: bool, run: &RunSettings) -> Success {
+        Success::new(&self.success, self.endable, has_route, run)
     }
 
     /// The names of its measures, in their order.

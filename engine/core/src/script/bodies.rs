@@ -21,7 +21,7 @@ struct OwnFunction {
 
 /// The outline of a script without a mistake, with its compiled rules.
 pub(super) fn outline_of(code: &Code, ast: &AST, constants: &Scope<'static>, rules: &[CompiledRule]) -> ScriptOutline {
-    let reader = OutlineReader { code, constants };
+    let reader = OutlineReader { code, constants, measures: written_measures(ast.statements()) };
     let written = written_rules(ast.statements());
     let rules = rules.iter().zip(&written).map(|(rule, written)| reader.rule(rule, written)).collect();
     let mut outline = ScriptOutline { rules, ..ScriptOutline::default() };

@@ -6,7 +6,7 @@ use crate::judge::functions::{OF_ONE, OF_ONE_FRACTION, OF_TWO, OF_TWO_FRACTION, 
 use crate::judge::memory::Remembered;
 use crate::judge::needs::{Needs, SlotUse};
 use crate::judge::rule::Persistence;
-use rhai::{Expr, FnCallExpr, Position, Scope};
+use rhai::{Expr, FnCallExpr, Position, Scope, Stmt, StmtBlock};
 
 /// The way from one tree to the other.
 pub(super) struct Compiler<'a> {
@@ -69,6 +69,30 @@ impl Compiler<'_> {
             Expr::Variable(..) => self.variable(expr)?,
             Expr::Dot(..) | Expr::Index(..) => self.fact(expr)?,
             Expr::FnCall(call, position) if !call.is_qualified() => self.call(call, *position)?,
+            Expr::Stmt(block) => self.choice(block)?,
+            _ => return None,
+        })
+    }
+
+    /// `if a { b } else { c }` with two of a kind.
+    fn choice(&mut self, block: &StmtBlock) -> Option<Typed> {
+        let only = |block: &StmtBlock| match block.statements() {
+            [Stmt::Expr(expr)] => Some(Expr::clone(expr)),
+            [choice @ Stmt::If(..)] => {
+                Some(Expr::Stmt(Box::new(StmtBlock::new([choice.clone()], Position::NONE, Position::NONE))))
+            }
+            _ => None,
+        };
+        let [Stmt::If(flow, _)] = block.statements() else { return None };
+        let flag = self.flag(&flow.expr)?;
+        let (a, b) = (only(&flow.body)?, only(&flow.branch)?);
+        Some(match (self.expression(&a)?, self.expression(&b)?) {
+            (Typed::Number(a), Typed::Number(b)) => Typed::Number(Number::Choose(Box::new(flag), Box::new([a, b]))),
+            (Typed::Whole(a), Typed::Whole(b)) => Typed::Whole(Number::Choose(Box::new(flag), Box::new([a, b]))),
+            (Typed::Flag(a), Typed::Flag(b)) => {
+                let not = Flag::Not(Box::new(flag.clone()));
+                Typed::Flag(Flag::Or(vec![Flag::And(vec![flag, a]), Flag::And(vec![not, b])]))
+            }
             _ => return None,
         })
     }

@@ -5,6 +5,7 @@ use super::bodies::outline_of;
 use super::compile::{Compiler, Vocabulary};
 use super::named_body::{BodyFiles, beside};
 use super::outline::ScriptOutline;
+use super::own_doing::OwnDoing;
 use super::params::{self, Declared, ParamValues};
 use super::rules::{rules, stage};
 use super::setup::{self, Log, SetUp};
@@ -47,7 +48,13 @@ impl Draft {
     /// If nothing can be understood after a mistake: the file cannot be read as a script, or a limit stopped it.
     pub(crate) fn load(path: &Path, values: &ParamValues) -> Result<Self> {
         let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-        Self::read(&name, source::read(path)?, &beside(path), values)
+        let source = source::read(path)?;
+        // Folders are named after it.
+        if name.chars().all(|c| c == '.') {
+            let message = format!("'{}' has no name but dots", printable(&path.display().to_string()));
+            return Diagnostic::new("E-SCRIPT-FILE", message).help("rename the file: mine.rhai").fail();
+        }
+        Self::read(&name, source, &beside(path), values)
     }
 
     /// Looks for mistakes in a script's text; `name` is the behaviour's.
@@ -106,7 +113,7 @@ impl Draft {
         calls.into_iter().for_each(|call| unread.all_of(call));
         engine.register_global_module(constants_module(&constants).into());
         let read = ReadScript { code, tree, engine, constants, settings: &settings, needs, bins };
-        let (compiled, outline, success) = read.compile(&spoilt, mistakes)?;
+        let (compiled, outline, success) = read.compile(&mut spoilt, mistakes)?;
         let behaviour = Behaviour::new(name, settings, places, outline, compiled);
         let behaviour = behaviour.with_success(success).with_body(body).with_params(params);
         check_with_settings(&behaviour, &mut spoilt, &unread, mistakes)?;
@@ -129,7 +136,7 @@ impl ReadScript<'_> {
     /// Measures, rules, success and functions, in this order: each may name what stands before it.
     fn compile(
         self,
-        spoilt: &Spoilt<'_>,
+        spoilt: &mut Spoilt<'_>,
         mistakes: &mut Mistakes,
     ) -> std::result::Result<(CompiledScript, ScriptOutline, Vec<SuccessCondition>), Diagnostic> {
         let Self { code, tree, mut engine, constants, settings, mut needs, bins } = self;
@@ -146,6 +153,7 @@ impl ReadScript<'_> {
             rules: rules.iter().map(|rule| rule.text.name.as_str()).chain(reward_name).collect(),
             stages: settings.stages.iter().map(String::as_str).collect(),
             measures: tree.known.measures.iter().map(String::as_str).collect(),
+            own_doing: OwnDoing::of(tree.ast.statements(), &|name| code.views.group_of(name).is_some()),
         };
         let success = success::conditions(code, &tree.ast, &constants, &names, spoilt, mistakes);
         let function = |name| if has_function(&tree.ast, name) { code.function(name) } else { None };

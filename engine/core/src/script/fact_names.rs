@@ -38,6 +38,9 @@ impl Names<'_> {
             [Link::Index(beam), ..] if group == "laser" => self.beam(beam),
             [Link::Call(call, position), rest @ ..] => {
                 self.call_of_facts(group, call, *position);
+                if let ("laser", "between", [from, to]) = (group, call.name.as_str(), call.args.as_slice()) {
+                    self.bearings(from, to, *position);
+                }
                 if let ("sector" | "between", [next, ..]) = (call.name.as_str(), rest) {
                     self.sector(next);
                 }
@@ -50,6 +53,26 @@ impl Names<'_> {
                 Some(fact) => self.look(self.code.views.index(group), fact),
             },
             _ => {}
+        }
+    }
+
+    /// Bearings grow from right to left: the first is the lesser one.
+    fn bearings(&mut self, from: &Expr, to: &Expr, position: Position) {
+        let degrees = |expr: &Expr| match expr {
+            Expr::FloatConstant(value, _) => Some(**value),
+            Expr::IntegerConstant(value, _) => Some(*value as f64),
+            Expr::FnCall(call, _) => match (call.name.as_str(), call.args.as_slice()) {
+                ("-", [Expr::FloatConstant(value, _)]) => Some(-**value),
+                ("-", [Expr::IntegerConstant(value, _)]) => Some(-*value as f64),
+                _ => None,
+            },
+            _ => None,
+        };
+        if let (Some(from), Some(to)) = (degrees(from), degrees(to))
+            && from >= to
+        {
+            let message = format!("no beam lies between {from}° and {to}°: the lesser bearing comes first");
+            self.mistake("E-SCRIPT-FACT", position, message, "empty", format!("write between({to}, {from})"));
         }
     }
 

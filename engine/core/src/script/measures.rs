@@ -23,7 +23,7 @@ pub(super) fn measures(
     ast: &AST,
     variables: &[String],
     compiler: &mut Compiler<'_>,
-    spoilt: &Spoilt<'_>,
+    spoilt: &mut Spoilt<'_>,
     mistakes: &mut Mistakes,
 ) {
     let written = written_measures(ast.statements());
@@ -32,10 +32,14 @@ pub(super) fn measures(
         let count = mistakes.count();
         if let Some(wrong) = misnamed(code, measure, &known, variables) {
             mistakes.add(wrong);
+            if reads(measure.expression, measure.name) {
+                spoilt.insert(measure.name);
+            }
         }
         known.push(measure.name);
         let bytes = span(code, measure.expression);
         if spoilt.touches(&bytes, mistakes) {
+            spoilt.insert(measure.name);
             continue;
         }
         match compiler.clause(measure.expression) {
@@ -44,7 +48,11 @@ pub(super) fn measures(
                 compiler.script.remembered.push(Remembered::Measure(Measure { name, typed }));
             }
             Some(_) => {}
-            None => mistakes.add(not_remembered(code, first(measure.expression))),
+            None => {
+                let help = "write a measure with facts, numbers and the functions of the table; what is longer stands in 'fn reward'";
+                mistakes.add(not_remembered(code, first(measure.expression)).help(help));
+                spoilt.insert(measure.name);
+            }
         }
     }
     if let Some(one_too_many) = written.get(MOST_MEASURES) {
@@ -70,13 +78,29 @@ fn misnamed(code: &Code, measure: &WrittenMeasure<'_>, known: &[&str], variables
             format!("'{name}' is the name of facts")
         }
         () if variables.iter().any(|variable| variable == name) => format!("there is a variable called '{name}'"),
+        () if reads(measure.expression, name) => format!("measure '{name}' reads itself"),
         () if FUNCTIONS.iter().chain(WINDOWS).any(|row| row.name == name) => {
             format!("'{name}' is the name of one of the engine's functions")
         }
         () => return None,
     };
     let wrong = explain::mistake(&code.source, "E-SCRIPT-NAME", measure.name_position, message, "defined here");
-    Some(wrong.help("choose another name"))
+    let itself = reads(measure.expression, name);
+    Some(wrong.help(if itself {
+        "name something else: a measure is worked out anew in every step"
+    } else {
+        "choose another name"
+    }))
+}
+
+/// Whether an expression names a variable.
+fn reads(expr: &Expr, name: &str) -> bool {
+    let mut found = false;
+    expr.walk(&mut Vec::new(), &mut |path: &[ASTNode<'_>]| {
+        found |= matches!(path.last(), Some(ASTNode::Expr(Expr::Variable(variable, ..))) if variable.1 == name);
+        !found
+    });
+    found
 }
 
 /// Adds what is wrong with every window of a script, wherever it stands: the time, the rule that is named, their number.

@@ -19,6 +19,7 @@ mod memory;
 mod named_body;
 mod names;
 mod outline;
+mod own_doing;
 mod params;
 mod parts;
 mod positions;

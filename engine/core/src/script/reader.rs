@@ -4,7 +4,7 @@ use super::access::{Access, Link, fact_of};
 use super::outline::{Compared, Condition, NamedFact, RuleOutline};
 use super::positions::{first, line_end};
 use super::source::Code;
-use super::syntax::WrittenRule;
+use super::syntax::{WrittenMeasure, WrittenRule};
 use crate::judge::explain::offset;
 use crate::judge::expression::{Arithmetic, Comparison};
 use crate::judge::fact_table::FactId;
@@ -15,9 +15,11 @@ use rhai::{Expr, Position, Scope};
 pub(super) struct OutlineReader<'a> {
     pub code: &'a Code,
     pub constants: &'a Scope<'static>,
+    /// The measures: a fact that a measure stands for is the measure's.
+    pub measures: Vec<WrittenMeasure<'a>>,
 }
 
-impl OutlineReader<'_> {
+impl<'a> OutlineReader<'a> {
     /// The outline of one rule.
     pub(super) fn rule(&self, rule: &CompiledRule, written: &WrittenRule<'_>) -> RuleOutline {
         RuleOutline {
@@ -52,7 +54,10 @@ impl OutlineReader<'_> {
                 _ => Condition::Other,
             },
             Expr::FnCall(..) => self.compared(expr, &|_| None).map_or(Condition::Other, Condition::Compare),
-            _ => self.fact(expr).map_or(Condition::Other, |fact| Condition::Flag(fact, false)),
+            _ => match (self.measure(expr), self.fact(expr)) {
+                (Some(measure), _) => self.condition(measure),
+                (None, fact) => fact.map_or(Condition::Other, |fact| Condition::Flag(fact, false)),
+            },
         }
     }
 
@@ -104,8 +109,17 @@ impl OutlineReader<'_> {
         }
     }
 
+    /// What a measure stands for, where one is named; it reads only those above it.
+    fn measure(&self, expr: &Expr) -> Option<&'a Expr> {
+        let access = Access::of(expr).filter(|access| access.links.is_empty())?;
+        self.measures.iter().find(|measure| measure.name == access.root).map(|measure| measure.expression)
+    }
+
     /// A fact with its path.
     pub(super) fn fact(&self, expr: &Expr) -> Option<NamedFact> {
+        if let Some(measure) = self.measure(expr) {
+            return self.fact(measure);
+        }
         let access = Access::of(expr)?;
         let is_group = |name: &str| self.code.views.group_of(name).is_some();
         let (group, links) = match access.links.split_first() {

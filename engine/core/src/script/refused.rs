@@ -19,7 +19,14 @@ pub(super) fn syntax(source: &SourceText, error: &ParseError, own_names: &[Strin
     let at = |message: String, label: &str| mistake(source, "E-SCRIPT-SYNTAX", *position, message, label);
     match &**kind {
         ParseErrorType::BadInput(LexError::ImproperSymbol(mark, message)) if mark == OURS => {
-            mistake(source, "E-SCRIPT-RULE", *position, message, "found this")
+            let wrong = mistake(source, "E-SCRIPT-RULE", *position, message, "found this");
+            let assigns = source.text[offset(source, *position)..].starts_with("= ");
+            if assigns { wrong.help("write == to compare") } else { wrong }
+        }
+        ParseErrorType::AssignmentToInvalidLHS(_) if let Some(at) = assigned(source, offset(source, *position)) => {
+            Diagnostic::new("E-SCRIPT-SYNTAX", "'=' gives a variable a value, and does not compare")
+                .at(source, at..at + 1, "not here")
+                .help("write == to compare")
         }
         ParseErrorType::VariableUndefined(name) => unknown_name(source, *position, name, own_names),
         ParseErrorType::Reserved(word)
@@ -68,6 +75,17 @@ pub(super) fn syntax(source: &SourceText, error: &ParseError, own_names: &[Strin
         }
         other => at(lower(&printable(&other.to_string())), "here"),
     }
+}
+
+/// Where the first `=` alone stands in the statement from a byte on.
+fn assigned(source: &SourceText, from: usize) -> Option<usize> {
+    let text = &source.text[from..];
+    let statement = &text[..text.find(';').unwrap_or(text.len())];
+    let alone = |at: usize| {
+        let (before, after) = (statement[..at].chars().next_back(), statement[at + 1..].chars().next());
+        !before.is_some_and(|c| "=<>!+-*/".contains(c)) && !after.is_some_and(|c| "=>".contains(c))
+    };
+    statement.match_indices('=').map(|(at, _)| at).find(|at| alone(*at)).map(|at| from + at)
 }
 
 fn most_of(kind: &ParseErrorType) -> Option<String> {

@@ -1,6 +1,7 @@
 //! What a script calls success, checked and compiled: conditions over the figures of the test.
 
 use super::access::{Access, Link};
+use super::own_doing::OwnDoing;
 use super::positions::{first, span};
 use super::source::Code;
 use super::spoilt::Spoilt;
@@ -21,6 +22,20 @@ pub(super) struct FigureNames<'a> {
     pub rules: Vec<&'a str>,
     pub stages: Vec<&'a str>,
     pub measures: Vec<&'a str>,
+    /// Of rules and measures those that tell only what the robot itself does.
+    pub own_doing: OwnDoing<'a>,
+}
+
+impl FigureNames<'_> {
+    /// Whether a figure is the script's own word: the reward, or what reads nothing but what the robot itself does.
+    fn is_of_reward(&self, figure: &TestFigure, of: &FigureOf) -> bool {
+        let own = |names: &[&str], index: usize, own: &[&str]| names.get(index).is_some_and(|name| own.contains(name));
+        match of {
+            FigureOf::Rule(index) => own(&self.rules, *index, &self.own_doing.rules),
+            FigureOf::Measure(index) => own(&self.measures, *index, &self.own_doing.measures),
+            _ => figure.name == "reward_per_1000",
+        }
+    }
 }
 
 /// Every condition of success without a mistake in it.
@@ -53,7 +68,10 @@ pub(super) fn conditions(
                 conditions.push(SuccessCondition { name: name.to_owned(), text, span: Some(bytes), term });
             }
             Ok(_) => {}
-            Err(wrong) => mistakes.add(*wrong),
+            Err(wrong) => {
+                let parts = compiler.mistakes_in(written.condition);
+                (if parts.is_empty() { vec![*wrong] } else { parts }).into_iter().for_each(|wrong| mistakes.add(wrong));
+            }
         }
     }
     conditions
@@ -96,6 +114,23 @@ impl SuccessCompiler<'_> {
                 self.wrong(first(written.condition), message, "this is a number", "compare it: test.laps >= 5")
             }
         }
+    }
+
+    /// What is wrong in an expression, each part told by itself; nothing if only the whole is.
+    fn mistakes_in(&self, expr: &Expr) -> Vec<Diagnostic> {
+        let parts: &[Expr] = match expr {
+            Expr::And(parts, _) | Expr::Or(parts, _) => parts,
+            Expr::FnCall(call, _) => &call.args,
+            _ => &[],
+        };
+        let wrong = |part: &Expr| match self.term(part) {
+            Ok(_) => Vec::new(),
+            Err(whole) => {
+                let inner = self.mistakes_in(part);
+                if inner.is_empty() { vec![*whole] } else { inner }
+            }
+        };
+        parts.iter().flat_map(wrong).collect()
     }
 
     fn term(&self, expr: &Expr) -> Compiled<Kinded> {
@@ -227,7 +262,10 @@ impl SuccessCompiler<'_> {
             }
         };
         match of {
-            Some(of) => Ok(Kinded::Number(Term::TestFigure(FigureUse { subject, figure, of }))),
+            Some(of) => {
+                let of_reward = self.names.is_of_reward(figure, &of);
+                Ok(Kinded::Number(Term::TestFigure(FigureUse { subject, figure, of, of_reward })))
+            }
             None => self.wrong(position, message, "here", form),
         }
     }

@@ -11,6 +11,7 @@ mod robots;
 mod running;
 mod same;
 mod success;
+mod traps;
 mod types;
 mod views;
 mod words;

@@ -1,15 +1,16 @@
 //! Truth values and numbers told apart at load: the interpreter compares the two without a word, and the answer is always the
 //! same. What has no type that can be read from the text is let through.
 
-use super::access::{Access, fact_of};
+use super::access::{Access, Link, fact_of};
 use super::positions::first;
 use super::source::Code;
-use super::syntax::is_success_expr;
+use super::syntax::{is_success_expr, written_measures};
 use crate::diagnostic::{Diagnostic, Mistakes};
 use crate::judge::explain::offset;
 use crate::judge::expression::{Arithmetic, Comparison};
-use crate::judge::functions::FUNCTIONS;
-use rhai::{AST, ASTNode, Expr, FnCallExpr, Position};
+use crate::judge::fact_table::Fact;
+use crate::judge::functions::{FUNCTIONS, OF_ONE, OF_ONE_FRACTION};
+use rhai::{AST, ASTFlags, ASTNode, Expr, FnCallExpr, Position, Stmt};
 
 /// What a value is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,7 +24,8 @@ pub(super) fn check_types(code: &Code, ast: &AST, mistakes: &mut Mistakes) {
     let mut facts = vec!["facts"];
     let functions = ast.iter_functions().filter(|function| matches!(function.name, "reward" | "calibrate"));
     facts.extend(functions.filter_map(|function| function.params.first().copied()));
-    let checker = TypeChecker { code, facts: &facts };
+    let mut checker = TypeChecker { code, facts: &facts, named: Vec::new() };
+    checker.named = named(ast, &checker);
     for (part, in_function) in [(ast.clone_statements_only(), false), (ast.clone_functions_only(), true)] {
         part.walk(&mut |path: &[ASTNode<'_>]| {
             let Some((ASTNode::Expr(expr), above)) = path.split_last() else { return true };
@@ -47,6 +49,22 @@ struct TypeChecker<'a> {
     code: &'a Code,
     /// The names by which all facts are known.
     facts: &'a [&'a str],
+    /// Measures and constants, each with what it is.
+    named: Vec<(String, Kind)>,
+}
+
+/// What measures and constants are, as far as each can be told without those that it reads.
+fn named(ast: &AST, checker: &TypeChecker<'_>) -> Vec<(String, Kind)> {
+    let constant = |statement: &Stmt| match statement {
+        Stmt::Var(variable, flags, _) if flags.contains(ASTFlags::CONSTANT) => {
+            Some((variable.0.name.to_string(), checker.kind(&variable.1)?))
+        }
+        _ => None,
+    };
+    let constants = ast.statements().iter().filter_map(constant);
+    let measures = written_measures(ast.statements());
+    let measures = measures.iter().filter_map(|one| Some((one.name.to_owned(), checker.kind(one.expression)?)));
+    constants.chain(measures).collect()
 }
 
 impl TypeChecker<'_> {
@@ -59,12 +77,15 @@ impl TypeChecker<'_> {
             }
             Expr::FnCall(call, position) => match call.args.as_slice() {
                 [of] if call.name == "!" && self.kind(of) == Some(Kind::Number) => Some(self.no_flag(of)),
-                [of] if call.name == "-" && self.kind(of) == Some(Kind::Flag) => Some(self.no_number(of)),
+                [of] if self.kind(of) == Some(Kind::Flag) && (call.name == "-" || self.is_of_numbers(call)) => {
+                    Some(self.no_number(of))
+                }
                 [a, b] if let Some(comparison) = Comparison::of(&call.name) => {
                     self.compared(comparison, call, *position, [a, b])
                 }
                 [a, b] if Arithmetic::of(&call.name).is_some() => {
-                    [a, b].into_iter().find(|side| self.kind(side) == Some(Kind::Flag)).map(|flag| self.no_number(flag))
+                    let flag = [a, b].into_iter().find(|side| self.kind(side) == Some(Kind::Flag));
+                    flag.map(|flag| self.no_number(flag)).or_else(|| self.drops_fraction(call, *position))
                 }
                 _ => None,
             },
@@ -107,6 +128,37 @@ impl TypeChecker<'_> {
         let message = "a truth value cannot be compared with a number";
         let marked = if flag_first { operator..end } else { start..end };
         Some(self.mistake(message, marked, &format!("{never}: {name} is true or false"), help))
+    }
+
+    /// A fact that is a whole number, divided by a whole number.
+    fn drops_fraction(&self, call: &FnCallExpr, position: Position) -> Option<Diagnostic> {
+        let ("/", [a, b]) = (call.name.as_str(), call.args.as_slice()) else { return None };
+        let literal = |expr: &Expr| matches!(expr, Expr::IntegerConstant(..));
+        if !self.is_whole(a) || !self.is_whole(b) || literal(a) && literal(b) {
+            return None;
+        }
+        let text = |expr: &Expr| &self.code.source.text[self.start(expr)..self.end(expr)];
+        let help = match literal(b) {
+            true => format!("write {} / {}.0", text(a), text(b)),
+            false => format!("write 1.0 * {} / {}", text(a), text(b)),
+        };
+        let at = offset(&self.code.source, position);
+        Some(self.mistake("a division of whole numbers drops the fraction", at..at + 1, "both are whole", help))
+    }
+
+    /// Whether it is one of the engine's functions of one number.
+    fn is_of_numbers(&self, call: &FnCallExpr) -> bool {
+        OF_ONE.iter().chain(OF_ONE_FRACTION).any(|row| row.0 == call.name)
+    }
+
+    fn is_whole(&self, expr: &Expr) -> bool {
+        match expr {
+            Expr::IntegerConstant(..) => true,
+            Expr::FnCall(call, _) => {
+                Arithmetic::of(&call.name).is_some() && call.args.iter().all(|of| self.is_whole(of))
+            }
+            _ => self.fact_of(expr).is_some_and(|fact| fact.kind() == "whole number"),
+        }
     }
 
     fn no_flag(&self, number: &Expr) -> Diagnostic {
@@ -171,11 +223,25 @@ impl TypeChecker<'_> {
     }
 
     fn fact(&self, expr: &Expr) -> Option<Kind> {
+        let own = Access::of(expr).filter(|access| access.links.is_empty() && !access.is_local);
+        if let Some(own) = own
+            && let Some((_, kind)) = self.named.iter().find(|(name, _)| name == own.root)
+        {
+            return Some(*kind);
+        }
+        Some(if self.fact_of(expr)?.kind() == "true or false" { Kind::Flag } else { Kind::Number })
+    }
+
+    fn fact_of(&self, expr: &Expr) -> Option<&'static Fact> {
         let access = Access::of(expr)?;
         let by_argument = self.facts.contains(&access.root);
         let (group, links) = if by_argument { access.group_of_facts()? } else { access.group()? };
+        // A fact of the step before is what it is now.
+        let (group, links) = match (group, links) {
+            ("previous", [Link::Property(group, _), rest @ ..]) => (*group, rest),
+            other => other,
+        };
         let group = self.code.views.group_of(group).filter(|_| by_argument || !access.is_local)?;
-        let fact = fact_of(group, links)?;
-        Some(if fact.kind() == "true or false" { Kind::Flag } else { Kind::Number })
+        fact_of(group, links)
     }
 }

@@ -1,6 +1,7 @@
 //! Words of other languages where the parser gave up, with what is written here.
 
-use crate::diagnostic::{Diagnostic, SourceText};
+use crate::diagnostic::{Diagnostic, SourceText, nearest_name};
+use crate::outcome::Then;
 use std::ops::Range;
 
 /// What other languages write, and what is written here.
@@ -21,6 +22,9 @@ const UNITS: &[(&str, f64, &str)] = &[
     ("min", 60.0, "seconds"),
 ];
 
+/// What begins a statement with a name behind it.
+const NAMED: &[&str] = &["rule", "success"];
+
 /// How an attempt can end: words that people write in the place of `rule`.
 const ENDS: &[&str] = &["goal", "fail", "failure", "restart", "recover", "penalty"];
 
@@ -32,6 +36,8 @@ pub(super) fn foreign_word(source: &SourceText, at: usize) -> Option<Diagnostic>
         .or_else(|| operator(source, &before))
         .or_else(|| unit(source, &before, &here))
         .or_else(|| end_as_rule(source, &before, &here))
+        .or_else(|| statement(source, &before, &here))
+        .or_else(|| then(source, &here))
         .or_else(|| recovery(source, &before, &here))
 }
 
@@ -88,6 +94,41 @@ fn end_as_rule(source: &SourceText, word: &Range<usize>, next: &Range<usize>) ->
     };
     let help = format!("write rule \"{name}\" when CONDITION => {value} then {then};");
     Some(wrong(source, word, format!("'{found}' stands at the end of a rule"), "no statement begins so", help))
+}
+
+/// `rul "a" when ...`, or `success when ...`: a word that begins a statement, misspelt or without a name behind it.
+fn statement(source: &SourceText, word: &Range<usize>, next: &Range<usize>) -> Option<Diagnostic> {
+    let (text, found) = (&source.text, &source.text[word.clone()]);
+    let begins = text[..word.start].trim_end();
+    if !(begins.is_empty() || begins.ends_with([';', '}']) || text[begins.len()..word.start].contains('\n')) {
+        return None;
+    }
+    if text[next.clone()] == *"when" && NAMED.contains(&found) {
+        let help = format!("write {found} \"name\" when ...");
+        return Some(wrong(source, next, format!("after '{found}' comes its name"), "no name", help));
+    }
+    let named = text[next.start..].starts_with('"');
+    let near = nearest_name(found, NAMED.iter().copied()).filter(|near| named && *near != found)?;
+    Some(wrong(
+        source,
+        word,
+        format!("no statement begins with '{found}'"),
+        "not known",
+        format!("did you mean '{near}'?"),
+    ))
+}
+
+/// `-1 the recover`, `-1 recover`: the end of a rule without its `then`.
+fn then(source: &SourceText, word: &Range<usize>) -> Option<Diagnostic> {
+    let (text, found) = (&source.text, &source.text[word.clone()]);
+    let ends = |word: &str| Then::of(word).is_some();
+    if ends(found) {
+        let help = format!("write then {found}");
+        return Some(wrong(source, word, format!("before '{found}' comes 'then'"), "not here", help));
+    }
+    let next: String = text[word.end..].trim_start().chars().take_while(|c| c.is_alphanumeric()).collect();
+    let near = nearest_name(found, ["then"].into_iter()).filter(|near| ends(&next) && *near != found)?;
+    Some(wrong(source, word, format!("'{found}' has no meaning here"), "not known", format!("did you mean '{near}'?")))
 }
 
 /// `then recover("start")`.

@@ -16,9 +16,13 @@ pub(crate) struct Endable {
 
 /// At most so many failures in 1,000 steps.
 const FEW_FAILURES: f64 = 10.0;
+/// At most so many steps with a contact: where goals can be reached, a crash may be called one.
+const FEW_CONTACTS: f64 = 20.0;
+/// At most so many restarts: who is put back every few seconds is carried, and gets along by that.
+const FEW_RESTARTS: f64 = 10.0;
 /// At least this share of the attempts.
 const MOST_GOALS: f64 = 0.8;
-/// So many times as far between two failures as a robot that knows nothing.
+/// So many times as far between two interventions as a robot that knows nothing.
 const BEATS_CHANCE: f64 = 5.0;
 /// Net along the route, m/s: half of the paper's cruising speed.
 const ALONG_M_PER_S: f64 = 0.1;
@@ -35,7 +39,9 @@ pub(crate) fn default_conditions(endable: Endable, has_route: bool, seconds: f64
     let figure = |subject, name| {
         let figure = TestFigure::of(name);
         let of = FigureOf::Whole;
-        figure.map_or(Term::Constant(f64::NAN), |figure| Term::TestFigure(FigureUse { subject, figure, of }))
+        figure.map_or(Term::Constant(f64::NAN), |figure| {
+            Term::TestFigure(FigureUse { subject, figure, of, of_reward: false })
+        })
     };
     let compare = |comparison, a, b| Term::Compare(comparison, Box::new([a, b]));
     let than = |comparison, subject, name, limit| compare(comparison, figure(subject, name), Term::Constant(limit));
@@ -49,11 +55,14 @@ pub(crate) fn default_conditions(endable: Endable, has_route: bool, seconds: f64
         let goals = than(GreaterOrEqual, Test, "goal_rate", MOST_GOALS);
         let chance = than(Less, Untrained, "goal_rate", MOST_GOALS);
         ask("reaches its goals", "test.goal_rate >= 0.8 && untrained.goal_rate < 0.8", Term::And(vec![goals, chance]));
+        let text = format!("test.contacts_per_1000 <= {FEW_CONTACTS}");
+        ask("touches little", &text, than(LessOrEqual, Test, "contacts_per_1000", FEW_CONTACTS));
     } else if endable.failure {
-        let chance = figure(Untrained, "metres_per_failure");
+        let chance = figure(Untrained, "metres_per_intervention");
         let chance = Term::Binary(Arithmetic::Multiply, Box::new([Term::Constant(BEATS_CHANCE), chance]));
-        let beats = compare(GreaterOrEqual, figure(Test, "metres_per_failure"), chance);
-        ask("beats chance", "test.metres_per_failure >= 5 * untrained.metres_per_failure", beats);
+        let beats = compare(GreaterOrEqual, figure(Test, "metres_per_intervention"), chance);
+        ask("beats chance", "test.metres_per_intervention >= 5 * untrained.metres_per_intervention", beats);
+        let by_itself = than(LessOrEqual, Test, "restarts_per_1000", FEW_RESTARTS);
         if endable.stages {
             // What is wanted is the way from stage to stage.
         } else if has_route {
@@ -61,10 +70,14 @@ pub(crate) fn default_conditions(endable: Endable, has_route: bool, seconds: f64
             let along_m = ALONG_M_PER_S * seconds;
             let along = compare(GreaterOrEqual, along, Term::Constant(along_m));
             let on = than(LessOrEqual, Test, "off_route", MOST_OFF);
-            let text = format!("abs(test.net_route_m) >= {along_m:.0} && test.off_route <= {MOST_OFF}");
-            ask("gets along", &text, Term::And(vec![along, on]));
+            let text = format!(
+                "abs(test.net_route_m) >= {along_m:.0} && test.off_route <= {MOST_OFF} && test.restarts_per_1000 <= {FEW_RESTARTS}"
+            );
+            ask("gets along", &text, Term::And(vec![along, on, by_itself]));
         } else {
-            ask("gets along", "test.idle <= 0.5", than(LessOrEqual, Test, "idle", MOST_IDLE));
+            let moves = than(LessOrEqual, Test, "idle", MOST_IDLE);
+            let text = format!("test.idle <= {MOST_IDLE} && test.restarts_per_1000 <= {FEW_RESTARTS}");
+            ask("gets along", &text, Term::And(vec![moves, by_itself]));
         }
     }
     if endable.stages && !endable.goal {

@@ -36,6 +36,9 @@ pub struct TestFigures {
     pub route_offset_m: Option<f64>,
     /// Progress along the route in either direction, without a route the path, over failures + 1, metres.
     pub metres_per_failure: f64,
+    /// The same over failures + restarts + 1, metres.
+    #[serde(default)]
+    pub metres_per_intervention: f64,
     /// Steps in which the body touched something.
     pub contacts: u64,
     /// Steps in 1,000 in whose choice a guard took an action away; absent in a script without guards.
@@ -337,6 +340,12 @@ pub const FIGURES: &[TestFigure] = &[
         "metres",
         |test| test.metres_per_failure,
         "Progress along the route in either direction, without a route the path, over failures + 1.",
+    ),
+    test(
+        "metres_per_intervention",
+        "metres",
+        |test| test.metres_per_intervention,
+        "The same over failures + restarts + 1: what the robot does by itself.",
     ),
     test("spinning", "share", |test| test.spinning, "Spells of 20 s with a full turn on a radius below 0.3 m."),
     test("standing", "share", |test| test.standing, "Spells of 20 s with less than 0.2 m of path."),

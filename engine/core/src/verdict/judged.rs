@@ -23,8 +23,12 @@ pub enum Because {
     Fails,
     /// A robot that knows nothing meets all conditions too.
     UntrainedToo,
-    /// The conditions read nothing but rewards, which are the script's own word.
+    /// A robot that does not look meets all conditions too.
+    BlindToo,
+    /// The conditions tell nothing but rewards, which are the script's own word.
     RewardOnly,
+    /// The test, or that of a robot that knows nothing, was broken off.
+    BrokenOff,
     /// The script names no failure, no goal and no success.
     NothingToTellBy,
 }

@@ -6,6 +6,7 @@
 //! ```
 
 mod asked;
+mod base_lines;
 mod default;
 mod figures;
 mod judged;
@@ -14,6 +15,7 @@ mod term;
 mod window;
 
 pub use asked::{AskedFigure, Probe, Request};
+pub use base_lines::{BaseLines, BlindFigures};
 pub use figures::{FIGURES, MeasureTotal, RuleTotal, StageTotal, TestFigure, TestFigures};
 pub use judged::{Because, ConditionVerdict, FigureVerdict, SuccessVerdict};
 pub use success::{Success, SuccessCondition};

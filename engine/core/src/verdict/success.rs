@@ -4,12 +4,14 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::asked::Request;
+use super::base_lines::BaseLines;
 use super::default::{Endable, default_conditions};
 use super::figures::TestFigures;
 use super::judged::{Because, ConditionVerdict, FigureVerdict, SuccessVerdict};
 use super::term::{SideBySide, Subject, Term};
 use super::window::{WINDOW_STEPS, WindowCounts};
 use crate::outcome::Endings;
+use crate::settings::RunSettings;
 
 /// So many good windows in a row are asked for.
 const GOOD_WINDOWS: usize = 4;
@@ -39,7 +41,7 @@ impl SuccessCondition {
 
     /// Whether it reads nothing but rewards.
     fn reads_only_rewards(&self) -> bool {
-        self.term.figures().iter().all(|asked| asked.figure.name == "reward_per_1000")
+        self.term.figures().iter().all(|asked| asked.of_reward)
     }
 
     /// Whether every window of learning can be asked.
@@ -54,15 +56,18 @@ impl SuccessCondition {
 pub struct Success {
     conditions: Vec<SuccessCondition>,
     endable: Endable,
-    /// How long the test takes, seconds of the robot.
+    /// Steps of the whole test.
+    steps: u64,
+    /// How long they take, seconds of the robot.
     seconds: f64,
 }
 
 impl Success {
     /// The script's own conditions, or the default in a world with a lap route or without one.
-    pub(crate) fn new(own: &[SuccessCondition], endable: Endable, has_route: bool, seconds: f64) -> Self {
+    pub(crate) fn new(own: &[SuccessCondition], endable: Endable, has_route: bool, run: &RunSettings) -> Self {
+        let (steps, seconds) = (run.test_steps, run.test_steps as f64 * run.period_s);
         let conditions = if own.is_empty() { default_conditions(endable, has_route, seconds) } else { own.to_vec() };
-        Self { conditions, endable, seconds }
+        Self { conditions, endable, steps, seconds }
     }
 
     /// All of them must hold; none if a script says nothing by which success could be told.
@@ -83,27 +88,39 @@ impl Success {
         requests
     }
 
-    /// Whether a test is a success, beside what a robot that knows nothing does in the same test.
+    /// Whether a test is a success, beside what robots do in the same test that know nothing or do not look.
     #[must_use]
-    pub fn verdict(&self, test: &TestFigures, untrained: &TestFigures) -> SuccessVerdict {
+    pub fn verdict(&self, test: &TestFigures, lines: &BaseLines) -> SuccessVerdict {
+        let untrained = &lines.untrained;
         let (own, chance) = (self.of(test, untrained), self.of(untrained, untrained));
         let conditions: Vec<_> = self.conditions.iter().map(|condition| self.judged(condition, own, chance)).collect();
         let holds = conditions.iter().all(|condition| condition.holds);
+        let blind = lines.blind.as_ref().map(|blind| &blind.test).filter(|blind| blind.steps == test.steps);
         let why = if conditions.is_empty() {
             Because::NothingToTellBy
+        } else if test.steps < self.steps || untrained.steps < self.steps {
+            Because::BrokenOff
         } else if self.conditions.iter().all(SuccessCondition::reads_only_rewards) {
             Because::RewardOnly
         } else if !holds {
             Because::Fails
         } else if conditions.iter().all(|condition| condition.untrained) {
             Because::UntrainedToo
+        } else if self.tells_only_rewards(test, untrained) {
+            Because::RewardOnly
+        } else if blind.is_some_and(|blind| self.is_met_by(blind, untrained)) {
+            Because::BlindToo
         } else {
             Because::Holds
         };
         let success = match why {
             Because::Holds => Some(true),
             Because::Fails => Some(false),
-            Because::UntrainedToo | Because::RewardOnly | Because::NothingToTellBy => None,
+            Because::UntrainedToo
+            | Because::BlindToo
+            | Because::RewardOnly
+            | Because::BrokenOff
+            | Because::NothingToTellBy => None,
         };
         SuccessVerdict { success, why, conditions }
     }
@@ -113,6 +130,13 @@ impl Success {
     pub fn is_met_by(&self, test: &TestFigures, untrained: &TestFigures) -> bool {
         !self.conditions.is_empty()
             && self.conditions.iter().all(|condition| condition.term.holds_in(self.of(test, untrained)))
+    }
+
+    /// Whether all conditions hold as well if nothing but the figures of the reward is the test's, and every other one that of a
+    /// robot that knows nothing: then these tell nothing.
+    fn tells_only_rewards(&self, test: &TestFigures, untrained: &TestFigures) -> bool {
+        let (own, chance) = (self.of(test, untrained), self.of(untrained, untrained));
+        self.conditions.iter().all(|condition| condition.term.holds_by_rewards(own, chance))
     }
 
     fn of<'a>(&self, test: &'a TestFigures, untrained: &'a TestFigures) -> SideBySide<'a> {

@@ -33,6 +33,8 @@ pub(crate) struct FigureUse {
     pub subject: Subject,
     pub figure: &'static TestFigure,
     pub of: FigureOf,
+    /// Whether it is the script's own word: the reward, or what reads nothing but what the robot itself does.
+    pub of_reward: bool,
 }
 
 /// What a figure is of.
@@ -105,6 +107,11 @@ impl Term {
     /// Whether it holds of a test; a figure that is missing holds nothing.
     pub(crate) fn holds_in(&self, measured: SideBySide<'_>) -> bool {
         self.holds(&|figure| figure.read(measured)).unwrap_or(false)
+    }
+
+    /// Whether it holds of one side's figures of the reward and the other side's other figures.
+    pub(super) fn holds_by_rewards(&self, rewards: SideBySide<'_>, others: SideBySide<'_>) -> bool {
+        self.holds(&|figure| figure.read(if figure.of_reward { rewards } else { others })).unwrap_or(false)
     }
 
     /// Whether it holds of a window of learning.

@@ -115,7 +115,7 @@ fn states_of(comparison: &Comparison, index: usize, states: &StateComparison) ->
                 None => {
                     p.quiet {
                         (states.differ) " of " (states.both_met) " states that both have met, in " (states.clear) " of them clearly: "
-                        "by more than half of the seeds on both sides"
+                        "by more than half of the seeds that met them, three at least, on both sides"
                         @if states.states.len() < states.differ { "; the " (states.states.len()) " most visited are shown" }
                         ". Of many seeds the action counts that most of them hold for the best."
                     }

@@ -9,6 +9,9 @@ use super::side::Side;
 /// States that are kept.
 const MOST_STATES: usize = 60;
 
+/// Fewer seeds say nothing of what seeds agree on.
+const FEW_SEEDS: usize = 3;
+
 /// A run's states held against those of the first run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StateComparison {
@@ -18,7 +21,7 @@ pub struct StateComparison {
     pub both_met: usize,
     /// How many of them want another action.
     pub differ: usize,
-    /// In how many of these more than half of the seeds that met the state agree, on both sides.
+    /// In how many of these three seeds or more met the state and more than half of them agree, on both sides.
     pub clear: usize,
     /// Those that differ, the clear ones first, of these the most visited; 60 at most.
     pub states: Vec<ComparedState>,
@@ -104,10 +107,11 @@ impl StateComparison {
 }
 
 impl ComparedState {
-    /// Whether more than half of the seeds that met it agree, on both sides: else seeds of one run differ as much.
+    /// Whether at least three seeds met it and more than half of these agree, on both sides: else seeds of one run differ as
+    /// much.
     #[must_use]
     pub fn is_clear(&self) -> bool {
-        [&self.before, &self.after].iter().all(|choice| 2 * choice.seeds > choice.met)
+        [&self.before, &self.after].iter().all(|choice| choice.met >= FEW_SEEDS && 2 * choice.seeds > choice.met)
     }
 }
 

@@ -14,7 +14,7 @@ use crate::store::{POLICY_FILE, RUN_FILE, SUMMARY_FILE, run_to_toml};
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Learned, Plan, RunLog, SeedRun, Spread};
 use files::{write_log, write_policy, write_run, write_seed};
-use taken::{holds_another, numbered, taken};
+use taken::{Claim, taken};
 
 pub use files::{CURVE_FILE, create_folder, curve_of, write_json};
 pub use test_folder::TestFolder;
@@ -54,13 +54,14 @@ impl RunFolder {
     /// If it cannot be made; `E-RUN-TAKEN` if it holds another run that must stay.
     pub fn create(path: &Path, plan: &Plan, seeds: &[u64], if_taken: IfTaken) -> Result<Self> {
         let run = run_to_toml(plan, seeds.first().copied().unwrap_or_default())?;
+        let claim = Claim { run: &run, seeds };
         let path = match if_taken {
-            IfTaken::Replace => path.to_owned(),
-            IfTaken::Refuse if holds_another(path, &run) => return taken(path).fail(),
-            IfTaken::Refuse => path.to_owned(),
-            IfTaken::Number => numbered(path, &run),
+            IfTaken::Refuse if claim.is_denied(path) => return taken(path).fail(),
+            IfTaken::Replace | IfTaken::Refuse => path.to_owned(),
+            IfTaken::Number => claim.numbered(path),
         };
         create_folder(&path)?;
+        claim.clear(&path)?;
         write_atomic(&path.join(RUN_FILE), run.as_bytes())?;
         Ok(Self { path, many: seeds.len() > 1 })
     }

@@ -40,7 +40,7 @@ pub(super) fn write_page(folder: &Path, plan: &Plan, results: &[SeedResult], che
                 tally: run.learned.as_ref().map(|learned| &learned.tally),
                 policy: run.learned.as_ref().map(|learned| &learned.policy),
                 test: Some(&run.summary.test),
-                untrained: Some(&run.summary.untrained),
+                lines: Some(&run.summary.base_lines),
                 learning: log.map_or(&none, |log| &log.learning),
                 tested: log.map_or(&none, |log| &log.test),
             }

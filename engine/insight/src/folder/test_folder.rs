@@ -5,8 +5,11 @@ use std::path::{Path, PathBuf};
 use super::files::{create_folder, write_json};
 use super::pictures::{draw_frame, draw_trails};
 use crate::report::certainty_grid;
-use engine::diagnostic::Result;
+use crate::store::RUN_FILE;
+use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::experiment::{CertaintyGrid, Plan, TestRun};
+
+const TEST_FILE: &str = "test.json";
 
 /// A folder for a test.
 pub struct TestFolder {
@@ -17,8 +20,18 @@ impl TestFolder {
     /// Creates the folder.
     ///
     /// # Errors
-    /// If it cannot be made.
-    pub fn create(path: &Path) -> Result<Self> {
+    /// If it cannot be made; `E-RUN-TAKEN` if it holds a run, whose pictures would be replaced, or without `force` a test.
+    pub fn create(path: &Path, force: bool) -> Result<Self> {
+        let shown = printable(&path.display().to_string());
+        let taken = |message: String| Diagnostic::new("E-RUN-TAKEN", message);
+        if path.join(RUN_FILE).exists() {
+            let error = taken(format!("'{shown}' holds a run, whose pictures the test would replace"));
+            return error.help("name another folder with --out").fail();
+        }
+        if !force && path.join(TEST_FILE).exists() {
+            let error = taken(format!("'{shown}' holds another test"));
+            return error.help("name another folder with --out, or replace that test with --force").fail();
+        }
         create_folder(path)?;
         Ok(Self { path: path.to_owned() })
     }
@@ -28,7 +41,7 @@ impl TestFolder {
     /// # Errors
     /// If a file cannot be written.
     pub fn write(&self, plan: &Plan, tested: &TestRun, map: Option<&CertaintyGrid>) -> Result<()> {
-        write_json(&self.path.join("test.json"), &tested.figures)?;
+        write_json(&self.path.join(TEST_FILE), &tested.figures)?;
         let title = format!("{} in {}: test of the frozen policy", plan.behaviour.name(), plan.layout.name);
         draw_trails(&self.path, plan, &title, &[("first 800 steps", &tested.trail)])?;
         if let Some(map) = map {

@@ -63,7 +63,8 @@ fn alike(trial: &LintTrial, exploits: &Exploits) -> Option<f64> {
     (common && exploits.behaviours.iter().all(same)).then_some(mean)
 }
 
-fn place(plan: &Plan) -> std::ops::Range<usize> {
+/// Where the reward begins: `fn reward`, or the first rule.
+pub(super) fn place(plan: &Plan) -> std::ops::Range<usize> {
     let outline = plan.behaviour.outline();
     let rule = outline.rules.first().map(|rule| rule.condition_span.clone());
     outline.reward.clone().or(rule).unwrap_or(0..0)

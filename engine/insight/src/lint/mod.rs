@@ -96,6 +96,7 @@ fn look(plan: &Plan, threads: usize, stop: &AtomicBool) -> Result<Report> {
                 scale::observed(plan, &trial, &mut findings);
                 choice::observed(plan, &trial, &found, &mut findings);
                 verdict::check_exploits(plan, &found, &mut findings);
+                outcome::check_goals_met(plan, &trial, &mut findings);
                 outcome::check_values(plan, &trial, &mut findings);
                 outcome::check_success(plan, threads, stop, &mut findings)?;
                 exploits = Some(found);

@@ -195,6 +195,8 @@ mod tests {
             action,
             reward: state as f64,
             recover: false,
+            ending: None,
+            contact: false,
             next: Some(if action == 0 { state } else { 1 - state }),
         };
         (0..4_000).map(|index| one(index / 2 % 2, index % 2)).collect()
@@ -218,7 +220,15 @@ mod tests {
 
     #[test]
     fn one_lucky_visit_is_not_believed() {
-        let step = |action, reward| TrialStep { state: 0, action, reward, recover: false, next: Some(0) };
+        let step = |action, reward| TrialStep {
+            state: 0,
+            action,
+            reward,
+            recover: false,
+            ending: None,
+            contact: false,
+            next: Some(0),
+        };
         let mut steps = vec![step(0, 0.9); 100];
         steps.push(step(1, 1.0));
         steps.extend(vec![step(2, -1.0); 100]);

@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
+use super::choice::place;
 use super::exploit::cheats;
 use super::trial::LintTrial;
 use super::{Finding, read_flags};
@@ -10,12 +11,15 @@ use engine::allowed::Allowed;
 use engine::diagnostic::{Result, printable};
 use engine::experiment::{Choice, Chooser, Plan, in_parallel, test_choices, test_untrained};
 use engine::judge::FactId;
-use engine::outcome::Then;
+use engine::outcome::{Ending, Then};
+use engine::script::RuleOutline;
 
 /// The seed of the tests.
 const SEED: u64 = 0xd0_0e;
 /// Steps in which a value must have been given before anything is said about all of them.
 const ENOUGH: u64 = 200;
+/// Goals of the trial before anything is said about all of them.
+const ENOUGH_GOALS: usize = 10;
 
 /// Goals by accident: a crash that pays.
 pub(super) fn check_goals(plan: &Plan, findings: &mut Vec<Finding>) {
@@ -33,6 +37,22 @@ pub(super) fn check_goals(plan: &Plan, findings: &mut Vec<Finding>) {
                 .push(Finding::warning(plan, "W-GOAL-CONTACT", rule.condition_span.clone(), message).say(label, help));
         }
     }
+}
+
+/// Goals that came with a contact in the trial, whatever the script calls them.
+pub(super) fn check_goals_met(plan: &Plan, trial: &LintTrial, findings: &mut Vec<Finding>) {
+    let goals = || trial.transitions.iter().filter(|step| step.ending == Some(Ending::Goal));
+    let (all, touching) = (goals().count(), goals().filter(|step| step.contact).count());
+    if all < ENOUGH_GOALS || 2 * touching <= all || findings.iter().any(|finding| finding.code == "W-GOAL-CONTACT") {
+        return;
+    }
+    let outline = plan.behaviour.outline();
+    let pays = |rule: &&RuleOutline| matches!(rule.then, Some(Then::Goal | Then::Recover));
+    let rule = outline.rules.iter().find(pays).map(|rule| rule.condition_span.clone());
+    let span = rule.filter(|_| outline.reward.is_none()).unwrap_or_else(|| place(plan));
+    let message = format!("{touching} of {all} goals in the trial came with a contact");
+    let help = "is a crash a goal? ask for a distance that is farther from the wall, or write 'then fail'";
+    findings.push(Finding::warning(plan, "W-GOAL-CONTACT", span, message).say("what is reached here", help));
 }
 
 /// Values that read what is measured, and are always the same.
@@ -67,10 +87,14 @@ fn is_switched_off(plan: &Plan, span: &Range<usize>) -> bool {
     text[span.clone()].split(|c| !is_word(c)).any(|word| !word.is_empty() && is_zero(word))
 }
 
-/// A success of the script's own that a robot meets which knows nothing, or which does not look.
+/// A success, the script's own or the default, that a robot meets which knows nothing, or which does not look.
 pub(super) fn check_success(plan: &Plan, threads: usize, stop: &AtomicBool, findings: &mut Vec<Finding>) -> Result<()> {
     let success = plan.success();
-    let Some(span) = success.conditions().iter().find_map(|condition| condition.span.clone()) else { return Ok(()) };
+    if success.conditions().is_empty() {
+        return Ok(());
+    }
+    let own = success.conditions().iter().find_map(|condition| condition.span.clone());
+    let span = own.unwrap_or_else(|| place(plan));
     let (untrained, cheats) = (test_untrained(plan, SEED, stop)?, cheats(plan));
     let jobs: Vec<u64> = (0..cheats.len() as u64).collect();
     let tested = in_parallel(&jobs, threads, |job| {

@@ -6,6 +6,7 @@ use engine::diagnostic::Result;
 use engine::experiment::{ByState, Cycle, Each, Ledger, Plan, Step, TestRun, in_parallel, learn_into, test_choices};
 use engine::judge::{FactId, FactRead};
 use engine::learner::Policy;
+use engine::outcome::Ending;
 use engine::random::{Random, Stream};
 use engine::robot::Robot;
 
@@ -27,6 +28,10 @@ pub struct TrialStep {
     pub reward: f64,
     /// Whether the robot was brought back.
     pub recover: bool,
+    /// How the attempt ended, if it did.
+    pub ending: Option<Ending>,
+    /// Whether the body touched something.
+    pub contact: bool,
     /// The state in which the next action was chosen, after any recovery; nothing after the last step.
     pub next: Option<usize>,
 }
@@ -184,8 +189,8 @@ pub(super) fn drive(
         if let Some(last) = kept.last_mut() {
             last.next = Some(step.state);
         }
-        let (Step { state, action, reward, .. }, recover) = (*step, step.then.is_some());
-        kept.push(TrialStep { state, action, reward, recover, next: None });
+        let (Step { state, action, reward, contact, .. }, recover) = (*step, step.then.is_some());
+        kept.push(TrialStep { state, action, reward, recover, ending: step.ending(), contact, next: None });
         look(cycle, recover, &recovers, &mut rules);
     });
     let run = test_choices(&plan, seed, stop, &mut ByState(choose), &mut watch)?;
@@ -242,7 +247,9 @@ fn learning(plan: &Plan, stop: &AtomicBool) -> Result<(Vec<TrialStep>, Vec<RuleT
         if let Some(last) = steps.last_mut() {
             last.next = Some(state);
         }
-        steps.push(TrialStep { state, action, reward: record.reward, recover: record.then.is_some(), next: None });
+        let (reward, recover, contact) = (record.reward, record.then.is_some(), record.contact);
+        let ending = record.then.map(|then| then.ending(reward));
+        steps.push(TrialStep { state, action, reward, recover, ending, contact, next: None });
         let mut asked = rules.len();
         for (rule, value) in ledger.fired(index) {
             rules[rule].fire(value);

@@ -91,7 +91,7 @@ fn allowed(plan: &Plan, compared: &Compared) -> Option<Allowed> {
         Reach::Seen(low, high, unseen) => between(low.min(unseen), high.max(unseen), "its values"),
         Reach::Laser => {
             let laser = &settings.laser;
-            between(laser.min_range_m, laser.max_range_m + 6.0 * laser.noise_m, "the laser's beams")
+            between(laser.min_range_m, laser.max_range_m, "the laser's beams")
         }
         Reach::Accident | Reach::Any => None,
     }

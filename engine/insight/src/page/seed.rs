@@ -7,7 +7,7 @@ use super::track::{Moments, ScanShape, Track, TrackSource};
 use engine::diagnostic::Result;
 use engine::experiment::{Ledger, Phase, Plan, Tally};
 use engine::learner::Policy;
-use engine::verdict::{ConditionVerdict, SuccessVerdict, TestFigures};
+use engine::verdict::{BaseLines, ConditionVerdict, SuccessVerdict, TestFigures};
 
 use crate::verdict_words::{figures, headline};
 
@@ -25,8 +25,8 @@ pub struct SeedData<'a> {
     pub policy: Option<&'a Policy>,
     /// The test's figures, once it is done.
     pub test: Option<&'a TestFigures>,
-    /// Those of a robot that knows nothing.
-    pub untrained: Option<&'a TestFigures>,
+    /// What it is held against.
+    pub lines: Option<&'a BaseLines>,
     /// Steps of learning.
     pub learning: &'a Ledger,
     /// Steps of the test.
@@ -45,6 +45,8 @@ pub struct SeedView {
     pub brings_steps: bool,
     /// The first step from which four windows in a row are good.
     pub learned_at: Option<u64>,
+    /// Whether the script says anything by which that can be told.
+    pub tells_learning: bool,
     /// Reinforcement of each window.
     pub curve: Vec<f64>,
     /// What each rule added, window by window; empty for a seed without steps.
@@ -137,13 +139,14 @@ impl SeedView {
             shown_first: false,
             brings_steps: brings_steps || !data.tested.is_empty(),
             learned_at: data.tally.and_then(|tally| plan.success().learned_at(&tally.counts())),
+            tells_learning: plan.success().tells_learning(),
             by_rule: data.tally.map_or_else(Vec::new, |tally| windows.map(|at| by_rule(plan, tally, at)).collect()),
             curve,
             test: data.test.cloned(),
             verdict: data
                 .test
-                .zip(data.untrained)
-                .map(|(test, untrained)| VerdictView::from(&plan.success().verdict(test, untrained))),
+                .zip(data.lines)
+                .map(|(test, lines)| VerdictView::from(&plan.success().verdict(test, lines))),
             states_met: data.policy.map_or(0, |policy| policy.rows().iter().flatten().count()),
             states: data.policy.map_or(Ok(Vec::new()), |policy| states(plan, policy, brings_steps))?,
             learning: None,

@@ -94,7 +94,7 @@ fn a_seed_beyond_those_that_bring_their_steps_has_its_curve() {
             tally: Some(&learned.tally),
             policy: Some(&learned.policy),
             test: None,
-            untrained: None,
+            lines: None,
             learning: ledger,
             tested: &off,
         })
@@ -128,7 +128,7 @@ fn every_mover_is_where_it_was_when_the_steps_are_played_again() {
         tally: Some(&learned.tally),
         policy: Some(&learned.policy),
         test: None,
-        untrained: None,
+        lines: None,
         learning: &ledger,
         tested: &off,
     };

@@ -16,10 +16,12 @@ pub struct CurveRow {
 /// The table: `step`, `reinforcement_per_<window>_steps`, then one column for each rule; a missing value is empty.
 #[must_use]
 pub fn curve_csv(window_steps: u64, rules: &[String], rows: &[CurveRow]) -> String {
-    let mut out = format!("step,reinforcement_per_{window_steps}_steps");
+    let own = ["step".to_owned(), format!("reinforcement_per_{window_steps}_steps")];
+    let mut out = own.join(",");
     for rule in rules {
         out.push(',');
-        out.push_str(&quoted(rule));
+        // No two columns have one name.
+        out.push_str(&quoted(&if own.contains(rule) { format!("{rule} (rule)") } else { rule.clone() }));
     }
     out.push('\n');
     for row in rows {
@@ -60,6 +62,13 @@ mod tests {
             table,
             "step,reinforcement_per_500_steps,contact,\"near, \"\"left\"\"\"\n500,-20.5,-20.5,0\n1000,-1,-1,\n"
         );
+    }
+
+    #[test]
+    fn a_rule_with_the_name_of_a_column_has_a_column_of_its_own() {
+        let rules = ["step", "reinforcement_per_10_steps"].map(str::to_owned);
+        let heading = "step,reinforcement_per_10_steps,step (rule),reinforcement_per_10_steps (rule)\n";
+        assert_eq!(curve_csv(10, &rules, &[]), heading);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::axes::Plot;
 use super::canvas::{Spot, Tint, UNITS_PER_PX};
-use super::sheet::{PAPER, Sheet, VERMILION};
+use super::sheet::{GREEN, PAPER, Sheet, VERMILION};
 use engine::experiment::Trail;
 
 const FIRST: Tint = Tint::hex(0x6cbcf0);
@@ -17,7 +17,7 @@ pub(super) fn shade(share: f64) -> Tint {
 
 /// Every point of a path whose coordinates are finite.
 pub(super) fn points(path: &Trail) -> impl Iterator<Item = [f64; 2]> {
-    let all = path.legs.iter().flatten().chain(&path.failures);
+    let all = path.legs.iter().flatten().chain(&path.failures).chain(&path.goals);
     all.filter(|at| at[0].is_finite() && at[1].is_finite()).map(|at| [f64::from(at[0]), f64::from(at[1])])
 }
 
@@ -43,8 +43,18 @@ pub(super) fn draw_path(sheet: &mut Sheet, plot: &Plot, path: &Trail) {
             sheet.disc(at, radius_px, LAST);
         }
     }
+    for goal in &path.goals {
+        draw_goal(sheet, place(plot, *goal));
+    }
     for failure in &path.failures {
         sheet.cross(place(plot, *failure), 5.0, VERMILION);
+    }
+}
+
+/// A ring: told from a start, which is full, and from a failure without its colour.
+pub(super) fn draw_goal(sheet: &mut Sheet, at: Spot) {
+    for (radius_px, tint) in [(7.5, PAPER), (6.5, GREEN), (3.5, PAPER)] {
+        sheet.disc(at, radius_px, tint);
     }
 }
 

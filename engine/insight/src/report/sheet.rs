@@ -14,6 +14,7 @@ pub(super) const FRAME: Tint = Tint::hex(0x8c959f);
 pub(super) const BLUE: Tint = Tint::hex(0x0072b2);
 pub(super) const SKY: Tint = Tint::hex(0x56b4e9);
 pub(super) const VERMILION: Tint = Tint::hex(0xd55e00);
+pub(super) const GREEN: Tint = Tint::hex(0x009e73);
 
 /// Em of a picture's title, pixels.
 pub(super) const TITLE_PX: f64 = 22.0;

@@ -51,7 +51,8 @@ pub fn trajectories(data: &TrajectoryData<'_>) -> Result<Picture> {
             data.world.draw_robot(&mut sheet, &plot, last);
         }
     }
-    explain(&mut sheet, data.world);
+    let goals = data.panels.iter().any(|(_, path)| !path.goals.is_empty());
+    explain(&mut sheet, data.world, goals);
     sheet.finish(&shows(data.world, data.panels))
 }
 
@@ -59,7 +60,8 @@ pub fn trajectories(data: &TrajectoryData<'_>) -> Result<Picture> {
 fn shows(world: &WorldPlan<'_>, panels: &[(&str, &Trail)]) -> String {
     let panel = |(name, path): &(&str, &Trail)| {
         let (steps, failures) = (path.steps(), path.failures.len());
-        format!("{name}: path of the robot over {steps} steps, failures: {failures}")
+        let goals = if path.goals.is_empty() { String::new() } else { format!(", goals: {}", path.goals.len()) };
+        format!("{name}: path of the robot over {steps} steps, failures: {failures}{goals}")
     };
     let movers = world.movers.iter().map(|mover| format!("mover: {}", mover.name));
     panels.iter().map(panel).chain(movers).collect::<Vec<_>>().join("; ")
@@ -125,7 +127,7 @@ impl FloorPlan {
     }
 }
 
-fn explain(sheet: &mut Sheet, world: &WorldPlan<'_>) {
+fn explain(sheet: &mut Sheet, world: &WorldPlan<'_>, goals: bool) {
     let middle = |from: Spot, to: Spot| ((from.0 + to.0) / 2, (from.1 + to.1) / 2);
     let end = spot(WIDTH_PX - MARGIN_PX, sheet.height_px - 28.0);
     let time = |sheet: &mut Sheet, from: Spot, to: Spot| {
@@ -137,11 +139,15 @@ fn explain(sheet: &mut Sheet, world: &WorldPlan<'_>) {
     };
     let start = |sheet: &mut Sheet, from: Spot, to: Spot| sheet.disc(middle(from, to), 6.0, route::shade(1.0));
     let failure = |sheet: &mut Sheet, from: Spot, to: Spot| sheet.cross(middle(from, to), 5.0, VERMILION);
+    let goal = |sheet: &mut Sheet, from: Spot, to: Spot| route::draw_goal(sheet, middle(from, to));
     let mut all = vec![
         LegendEntry { sign: &start, words: "start" },
         LegendEntry { sign: &time, words: "way, light early to dark late" },
         LegendEntry { sign: &failure, words: "failure" },
     ];
+    if goals {
+        all.push(LegendEntry { sign: &goal, words: "goal" });
+    }
     if !world.robot_m.is_empty() {
         all.push(LegendEntry { sign: &plan::robot_sign, words: "robot at the end" });
     }

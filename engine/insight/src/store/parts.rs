@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
@@ -16,6 +16,18 @@ use engine::experiment::DIGEST_BYTES;
 pub const RUN_FILE: &str = "run.toml";
 /// The name of the file of figures.
 pub const SUMMARY_FILE: &str = "summary.json";
+/// The folders of the seeds of a run of many, in their order.
+#[must_use]
+pub fn seed_folders(folder: &Path) -> Vec<(u64, PathBuf)> {
+    let seed = |entry: std::fs::DirEntry| {
+        let seed = entry.file_name().to_str()?.parse().ok()?;
+        entry.path().join(RUN_FILE).is_file().then(|| (seed, entry.path()))
+    };
+    let mut seeds: Vec<_> = std::fs::read_dir(folder).into_iter().flatten().flatten().filter_map(seed).collect();
+    seeds.sort();
+    seeds
+}
+
 /// The longest part of a log that is read to find out its run, bytes: prefix and header.
 const MOST_HEADER_BYTES: u64 = 16 << 20;
 

@@ -29,6 +29,11 @@ pub(crate) fn run(arguments: &CheckArguments, console: &mut Console) -> std::res
             print_told(console, format, &fault.told_with_others())?;
             return Ok(fault.kind().exit_status());
         }
+        // Whatever is wrong is told in one shape, in one place.
+        Err(fault) if format == CheckFormat::Json => {
+            console.json(&serde_json::json!({ "findings": fault.told_with_others() }))?;
+            return Ok(fault.kind().exit_status());
+        }
         Err(fault) => return Err(fault.into()),
     };
     let told: Vec<Told> =

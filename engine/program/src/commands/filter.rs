@@ -24,6 +24,8 @@ use crate::console::{Console, ConsoleError};
 
 /// From so many images on it is told if most of them have one state.
 const FEW_IMAGES: usize = 5;
+/// A state that training met less often is hardly known.
+const FEW_VISITS: u64 = 10;
 /// Most of them: this share.
 const ALIKE: f64 = 0.8;
 
@@ -44,6 +46,9 @@ struct SeenImage {
     /// How often training met the state; only with `--run`.
     #[serde(skip_serializing_if = "Option::is_none")]
     visits: Option<u64>,
+    /// That as a share of all steps of training, 0 to 1; only with `--run`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    share: Option<f64>,
     /// Whether training never met the state; only with `--run`.
     #[serde(skip_serializing_if = "Option::is_none")]
     new: Option<bool>,
@@ -85,6 +90,7 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
             mask: mask.display().to_string(),
             picture: out.join(format!("{name}.png")).display().to_string(),
             visits,
+            share: visits.zip(met.as_ref()).map(|(visits, policy)| visits as f64 / all_visits(policy) as f64),
             new: visits.map(|visits| visits == 0),
         };
         print(console, &seen)?;
@@ -96,6 +102,13 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
     let alike = told_apart(&all, &grid, met.as_ref(), console)?;
     if met.is_none() {
         return Ok(u8::from(alike));
+    }
+    let rare = all.iter().filter(|seen| seen.visits.is_some_and(|visits| (1..FEW_VISITS).contains(&visits))).count();
+    if rare > 0 {
+        console.line(&format!(
+            "rare:     {rare} of {} images show a state met in fewer than {FEW_VISITS} steps",
+            all.len()
+        ))?;
     }
     let share = all.iter().filter(|seen| seen.new == Some(true)).count() as f64 / all.len() as f64;
     console.line(&format!("new:      {:.0} % of {} images show a state never met", 100.0 * share, all.len()))?;
@@ -141,8 +154,7 @@ fn told_apart(
     };
     console.line(&format!("warning:  one state ({state}) for {most} of {images} images{why}"))?;
     if let Some(policy) = met {
-        let all_visits: u64 = policy.rows().iter().flatten().map(|row| row.visits).sum();
-        let share = 100.0 * visits(policy, state) as f64 / all_visits.max(1) as f64;
+        let share = 100.0 * visits(policy, state) as f64 / all_visits(policy) as f64;
         console.line(&format!("          training was in that state in {share:.1} % of its steps"))?;
     }
     console.line("          the filter does not tell these images apart")?;
@@ -187,6 +199,11 @@ fn eyes<'a>(settings: &'a Settings, filters: &Catalogue) -> Vec<(&'a str, Option
     filters
         .map(|filter| (filter.name.as_str(), filter.condition.as_deref(), values(&filter.name, &filter.parameters)))
         .collect()
+}
+
+/// All steps of training, 1 at least.
+fn all_visits(policy: &Policy) -> u64 {
+    policy.rows().iter().flatten().map(|row| row.visits).sum::<u64>().max(1)
 }
 
 fn visits(policy: &Policy, state: usize) -> u64 {
@@ -249,6 +266,7 @@ fn print(console: &mut Console, seen: &SeenImage) -> std::result::Result<(), Con
     let met = match seen.visits {
         None => String::new(),
         Some(0) => ", new".to_owned(),
+        Some(1) => ", met once".to_owned(),
         Some(visits) => format!(", met {visits} times"),
     };
     console.line(&format!("{}: state {}, columns {}{met}", printable(&seen.file), seen.state, digits.join(" ")))

@@ -2,7 +2,7 @@
 
 use engine::diagnostic::printable;
 use engine::experiment::{CombinationFigures, MemberFigures, Plan, Spread, Summary};
-use engine::verdict::{Because, SuccessVerdict, TestFigures};
+use engine::verdict::{BaseLines, Because, SuccessVerdict, TestFigures};
 use insight::verdict_words::{figures, headline, learned, spread_of_figures, tells_learning};
 
 use crate::console::{Console, ConsoleError};
@@ -30,14 +30,14 @@ pub(super) fn one_line(summary: &Summary) -> String {
 
 /// One seed of a run.
 pub(super) fn print_one(console: &mut Console, plan: &Plan, summary: &Summary) -> Printed {
-    let Summary { behaviour, world, seed, steps_per_second, test, untrained, verdict, .. } = summary;
+    let Summary { behaviour, world, seed, steps_per_second, test, base_lines, verdict, .. } = summary;
     console.line(&format!("behaviour: {behaviour} in {world}, seed {seed}, {steps_per_second} steps per second"))?;
     print_verdict(console, verdict)?;
     match &summary.combination {
         Some(combination) => print_combination(console, combination)?,
         None => console.line(&format!("learned:   {}", learned(tells_learning(plan), summary)))?,
     }
-    print_figures(console, test, untrained)
+    print_figures(console, test, base_lines)
 }
 
 /// Whether a test is a success, and by which figures.
@@ -72,11 +72,17 @@ pub(super) fn print_many(console: &mut Console, spread: &Spread) -> Printed {
             spread_of_figures(condition)
         ))?;
     }
-    let untold = spread.seeds.iter().filter(|seed| seed.verdict.why == Because::UntrainedToo).count();
-    if untold > 0 {
-        console.line(&format!(
-            "warning:   with {untold} of {count} seeds a robot that knows nothing meets every condition too"
-        ))?;
+    let untold = [
+        (Because::UntrainedToo, "a robot that knows nothing meets every condition too"),
+        (Because::BlindToo, "a robot that does not look meets every condition too"),
+        (Because::RewardOnly, "nothing but the reward tells success, which is the script's own word"),
+        (Because::BrokenOff, "the test was broken off: they tell nothing"),
+    ];
+    for (why, what) in untold {
+        let seeds = spread.seeds.iter().filter(|seed| seed.verdict.why == why).count();
+        if seeds > 0 {
+            console.line(&format!("warning:   with {seeds} of {count} seeds {what}"))?;
+        }
     }
     let combined = spread.seeds.iter().any(|seed| seed.combination.is_some());
     if !combined {
@@ -134,7 +140,8 @@ pub(super) fn print_combination(console: &mut Console, figures: &CombinationFigu
 }
 
 /// The figures of a test for a person, and in words what a reward cannot see.
-pub(crate) fn print_figures(console: &mut Console, test: &TestFigures, untrained: &TestFigures) -> Printed {
+pub(crate) fn print_figures(console: &mut Console, test: &TestFigures, lines: &BaseLines) -> Printed {
+    let untrained = &lines.untrained;
     console.line(&format!(
         "test:      {} steps, {} ({:.1} per 1000, untrained {:.1}), {}, {:.2} m/s",
         test.steps,
@@ -167,6 +174,16 @@ pub(crate) fn print_figures(console: &mut Console, test: &TestFigures, untrained
     }
     if let Some(distance_m) = test.prey_distance_m {
         console.line(&format!("prey:      median distance {distance_m:.2} m"))?;
+    }
+    if let Some(blind) = &lines.blind {
+        let figures = &blind.test;
+        console.line(&format!(
+            "blind:     '{}' is the best that does not look: {:.1} failures and {:.1} restarts per 1000, {:.2} m/s",
+            blind.does,
+            figures.failures_per_1000,
+            figures.per_1000(figures.restarts),
+            figures.mean_speed
+        ))?;
     }
     let habits = [("spinning", test.spinning), ("standing", test.standing), ("circling", test.circling)];
     let habits: Vec<_> = habits.iter().filter(|(_, share)| *share > 0.02).collect();

@@ -68,10 +68,10 @@ struct StepEntry {
 }
 
 pub(crate) fn run(arguments: &ReplayArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
-    let recorded = RecordedRun::load(&arguments.run, catalogue(&arguments.filters)?)?;
     if arguments.verify {
-        return verify(&arguments.run, &recorded, console);
+        return verify(&arguments.run, &catalogue(&arguments.filters)?, console);
     }
+    let recorded = RecordedRun::load(&arguments.run, catalogue(&arguments.filters)?)?;
     let RecordedRun { stored: StoredRun { plan, seed, .. }, log, .. } = &recorded;
     let (phase, ledger, name) = match arguments.test {
         false => (Phase::Learning, &log.learning, "learning"),

@@ -23,7 +23,7 @@ pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::resul
     let overrides = Overrides { world, steps: arguments.steps, test_steps: None, set };
     let Runnable { plan, unpacked: _unpacked } =
         super::behaviour::open(&arguments.behaviour, &overrides, &arguments.filters, arguments.allow_unsigned)?;
-    let seeds: Vec<u64> = (0..arguments.seeds).map(|index| arguments.seed.wrapping_add(index)).collect();
+    let seeds = seeds(arguments)?;
     check_learning(arguments, &plan)?;
     if let Some(path) = &arguments.record {
         check_record(path, &seeds)?;
@@ -67,6 +67,16 @@ pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::resul
         return Ok(INTERRUPTED);
     }
     Ok(u8::from(!good))
+}
+
+/// The seeds, from the first on.
+fn seeds(arguments: &RunArguments) -> Result<Vec<u64>> {
+    let Some(end) = arguments.seed.checked_add(arguments.seeds - 1) else {
+        let message =
+            format!("there are no {} seeds from {} on: the last one is {}", arguments.seeds, arguments.seed, u64::MAX);
+        return Diagnostic::new("E-SET", message).help("choose a lesser --seed").fail();
+    };
+    Ok((arguments.seed..=end).collect())
 }
 
 /// Whether so many seeds succeed as are asked for: more than half, if nothing is asked.

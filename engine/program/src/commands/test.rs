@@ -2,10 +2,11 @@
 
 use std::sync::atomic::Ordering;
 
-use engine::diagnostic::Diagnostic;
-use engine::experiment::{CertaintyGrid, Decider, Overrides, test_untrained};
+use engine::diagnostic::{Diagnostic, printable};
+use engine::experiment::{CertaintyGrid, Decider, Overrides, base_lines};
 use engine::filter::Sources;
-use engine::verdict::{SuccessVerdict, TestFigures};
+use engine::settings::Settings;
+use engine::verdict::{BaseLines, SuccessVerdict, TestFigures};
 use insight::folder::TestFolder;
 use insight::store::StoredRun;
 use pack::{Evidence, Pack, Runnable};
@@ -17,12 +18,16 @@ use super::stop::{INTERRUPTED, on_ctrl_c};
 use crate::cli::TestArguments;
 use crate::console::{Console, ConsoleError};
 
+/// What the softmax of a frozen policy reads.
+const FROZEN: [&str; 3] = ["learner.temperature", "learner.temperature_end", "learner.cooling_visits"];
+
 /// What is printed as JSON: the figures as they stand in `figures.json`, and the verdict on them.
 #[derive(Serialize)]
 struct TestReport<'a> {
     #[serde(flatten)]
     figures: &'a TestFigures,
-    untrained: &'a TestFigures,
+    #[serde(flatten)]
+    lines: &'a BaseLines,
     verdict: &'a SuccessVerdict,
 }
 
@@ -34,30 +39,57 @@ pub(crate) fn run(arguments: &TestArguments, console: &mut Console) -> Result<u8
         Some((pack, depends)) => of_pack(&pack, &depends, &overrides, sources(&arguments.filters)?)?,
         None => {
             let stored = StoredRun::load_with(&arguments.run, catalogue(&arguments.filters)?)?;
-            StoredRun { plan: stored.plan.with_changes(&overrides)?, ..stored }
+            let plan = stored.plan.clone().with_changes(&overrides)?;
+            check_states(&stored.plan.settings, &plan.settings)?;
+            StoredRun { plan, ..stored }
         }
     };
+    check_effect(&arguments.set)?;
+    let folder = arguments.out.as_ref().map(|out| TestFolder::create(out, arguments.force)).transpose()?;
     let stop = on_ctrl_c()?;
     let test_seed = arguments.seed.unwrap_or(seed);
     let mut map = arguments.out.as_ref().and_then(|_| CertaintyGrid::new(&plan.layout, &plan.settings.laser));
     let tested = decider.test(&plan, test_seed, &stop, &mut map)?;
-    if let Some(out) = &arguments.out {
-        TestFolder::create(out)?.write(&plan, &tested, map.as_ref())?;
+    if let Some(folder) = &folder {
+        folder.write(&plan, &tested, map.as_ref())?;
     }
-    let untrained = test_untrained(&plan, test_seed, &stop)?;
-    let verdict = plan.success().verdict(&tested.figures, &untrained);
-    console.json(&TestReport { figures: &tested.figures, untrained: &untrained, verdict: &verdict })?;
+    let lines = base_lines(&plan, test_seed, &tested, &stop)?;
+    let verdict = plan.success().verdict(&tested.figures, &lines);
+    console.json(&TestReport { figures: &tested.figures, lines: &lines, verdict: &verdict })?;
     let how = if plan.learns() { "learned" } else { "combined" };
     console.line(&format!("behaviour: {} in {}, {how} with seed {seed}", plan.behaviour.name(), plan.layout.name))?;
     if let Some(combination) = &tested.combination {
         print_combination(console, &combination.figures)?;
     }
     print_verdict(console, &verdict)?;
-    print_figures(console, &tested.figures, &untrained)?;
+    print_figures(console, &tested.figures, &lines)?;
     if stop.load(Ordering::Relaxed) {
         return Ok(INTERRUPTED);
     }
     Ok(u8::from(!verdict.is_success()))
+}
+
+/// Refuses changes under which the states of what was learned mean something else.
+fn check_states(learned: &Settings, now: &Settings) -> engine::diagnostic::Result<()> {
+    let differs = if !learned.views().eq(now.views()) {
+        "other filters or another grid"
+    } else if (&learned.state, &learned.stages) != (&now.state, &now.stages) {
+        "another state"
+    } else {
+        return Ok(());
+    };
+    let message = format!("the policy was learned with {differs}: its states would mean something else");
+    let help = "leave that --set out here, and learn with it: engine run SCRIPT --set ...";
+    Diagnostic::new("E-POLICY-FILE", message).help(help).fail()
+}
+
+/// Refuses settings that a test has no use for.
+fn check_effect(set: &[String]) -> engine::diagnostic::Result<()> {
+    let learns = |key: &str| key == "run.steps" || key.starts_with("learner.") && !FROZEN.contains(&key);
+    let key = set.iter().filter_map(|pair| pair.split('=').next()).map(str::trim).find(|key| learns(key));
+    let Some(key) = key else { return Ok(()) };
+    let message = format!("'{}' says how to learn, and nothing is learned in a test", printable(key));
+    Diagnostic::new("E-SET", message).help("leave it out, or learn with it: engine run SCRIPT --set ...").fail()
 }
 
 /// What a pack carries: its policy, under the seed that learned it, or the policies that it combines.

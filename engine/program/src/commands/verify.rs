@@ -1,12 +1,16 @@
 //! `engine replay --verify`: learned and tested again from the seed alone, and every step and every figure compared.
 
 use std::path::Path;
-use std::sync::atomic::Ordering;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use engine::diagnostic::{Diagnostic, Result};
-use engine::experiment::{Decider, Learned, Overrides, Plan, RunLog, Summary, run_seed};
+use engine::experiment::{Decider, Learned, Overrides, Plan, RunLog, Spread, Summary, run_seed};
+use engine::filter::Catalogue;
 use insight::folder::{CURVE_FILE, curve_of};
-use insight::store::{POLICY_FILE, RUN_FILE, RecordedRun, policy_to_toml};
+use insight::store::{
+    LOG_FILE, POLICY_FILE, RUN_FILE, RecordedRun, SUMMARY_FILE, policy_to_toml, read_stored, seed_folders,
+};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -16,7 +20,7 @@ use crate::console::{Console, ConsoleError};
 /// Figures of `summary.json` that are not the run's: how fast it was, and whether it was stopped.
 const OF_THE_MOMENT: [&str; 2] = ["steps_per_second", "interrupted"];
 /// Of a run that was stopped these were measured on fewer steps than were asked for.
-const OF_WHOLE_RUNS: [&str; 2] = ["verdict", "untrained"];
+const OF_WHOLE_RUNS: [&str; 3] = ["verdict", "untrained", "blind"];
 
 #[derive(Serialize)]
 struct Verified {
@@ -29,17 +33,46 @@ struct Verified {
     state_hash: String,
 }
 
-/// Learns and tests again from the seed alone.
+/// Learns and tests again from the seed alone: one seed, or each of many and the figures above them.
 pub(super) fn verify(
     folder: &Path,
-    recorded: &RecordedRun,
+    filters: &Arc<Catalogue>,
     console: &mut Console,
 ) -> std::result::Result<u8, ConsoleError> {
-    let RecordedRun { stored, log, summary } = recorded;
+    let (stop, seeds) = (on_ctrl_c()?, seed_folders(folder));
+    if seeds.is_empty() || folder.join(LOG_FILE).exists() {
+        let Some(again) = verify_seed(folder, filters, &stop)? else { return Ok(INTERRUPTED) };
+        console.json(&again.verified)?;
+        print(console, &again.verified)?;
+        return Ok(0);
+    }
+    let (mut summaries, mut verified) = (Vec::new(), Vec::new());
+    for (seed, folder) in seeds {
+        let Some(again) = verify_seed(&folder, filters, &stop)? else { return Ok(INTERRUPTED) };
+        console.line(&format!("seed {seed}: the same"))?;
+        summaries.extend(again.written);
+        verified.push(again.verified);
+    }
+    let spread = as_json(&Spread::new(summaries))?;
+    compare_values(folder, &read_json(&folder.join(SUMMARY_FILE))?, &spread)?;
+    console.json(&verified)?;
+    console.line(&format!("reproduced bit for bit: {} seeds, and every figure above them", verified.len()))?;
+    console.line(NOT_COMPARED)?;
+    Ok(0)
+}
+
+/// What one seed came to, and its figures as they were written.
+struct Again {
+    verified: Verified,
+    written: Option<Summary>,
+}
+
+/// One seed; nothing if it was stopped.
+fn verify_seed(folder: &Path, filters: &Arc<Catalogue>, stop: &AtomicBool) -> Result<Option<Again>> {
+    let RecordedRun { stored, log, summary } = RecordedRun::load(folder, Arc::clone(filters))?;
     let (plan, seed) = (&stored.plan, stored.seed);
-    let stop = on_ctrl_c()?;
     // A run that was stopped is done again as far as it came; one that a failure ended, until it fails again.
-    let steps = match summary {
+    let steps = match &summary {
         Some(_) => Overrides {
             steps: Some(log.learning.last_leg().0),
             test_steps: Some(log.test.steps()),
@@ -49,26 +82,26 @@ pub(super) fn verify(
     };
     let plan = plan.clone().with_changes(&steps)?;
     let mut again = RunLog::new(&plan);
-    let (learned, figures, state_hash) = match run_seed(&plan, seed, &stop, &|_| (), &mut again) {
+    let (learned, figures, state_hash) = match run_seed(&plan, seed, stop, &|_| (), &mut again) {
         Ok(run) => (run.learned, Some(run.summary.clone()), run.summary.state_hash),
         // A run that a failure ended fails again, at the same step.
         Err(broken) if summary.is_none() => {
             let state_hash = broken.learned.as_ref().map_or_else(String::new, |learned| learned.state_hash.clone());
             (broken.learned, None, state_hash)
         }
-        Err(broken) => return Err(broken.error.into()),
+        Err(broken) => return Err(broken.error),
     };
     if stop.load(Ordering::Relaxed) {
-        return Ok(INTERRUPTED);
+        return Ok(None);
     }
-    compare_logs(log, &again)?;
+    compare_logs(&log, &again)?;
     if let (Decider::Learned(policy), Some(learned)) = (&stored.decider, &learned)
         && learned.policy != *policy
     {
-        return Err(Box::new(differs("the table in policy.toml")).into());
+        return differs("the table in policy.toml").fail();
     }
-    if let (Some(written), Some(figures)) = (summary, &figures) {
-        compare_figures(written, figures)?;
+    if let (Some(written), Some(figures)) = (&summary, &figures) {
+        compare_figures(folder, written, figures)?;
     }
     compare_files(folder, &plan, learned.as_ref())?;
     let verified = Verified {
@@ -80,14 +113,20 @@ pub(super) fn verify(
         log_sha256: again.sha256(),
         state_hash,
     };
-    console.json(&verified)?;
+    Ok(Some(Again { verified, written: summary }))
+}
+
+/// What is for people alone.
+const NOT_COMPARED: &str = "           pictures and report.html are drawn from these, and are not compared";
+
+fn print(console: &mut Console, verified: &Verified) -> std::result::Result<(), ConsoleError> {
     console.line(&format!(
         "reproduced bit for bit: {} steps of learning and {} of the test, and every figure",
         verified.learning_steps, verified.test_steps
     ))?;
+    console.line(NOT_COMPARED)?;
     console.line(&format!("log:       sha256 {}", verified.log_sha256))?;
-    console.line(&format!("state:     sha256 {}", verified.state_hash))?;
-    Ok(0)
+    console.line(&format!("state:     sha256 {}", verified.state_hash))
 }
 
 pub(super) fn differs(what: &str) -> Diagnostic {
@@ -109,32 +148,46 @@ fn compare_logs(log: &RunLog, again: &RunLog) -> Result<()> {
     Ok(())
 }
 
-/// Every figure that was published.
-fn compare_figures(written: &Summary, again: &Summary) -> Result<()> {
-    let value = |summary: &Summary| {
-        serde_json::to_value(summary)
-            .map_err(|error| Box::new(Diagnostic::new("E-IO", format!("cannot write the figures as JSON: {error}"))))
-    };
-    let (mut old, mut new) = (value(written)?, value(again)?);
+/// Every figure that was published, as it stands in the file.
+fn compare_figures(folder: &Path, written: &Summary, again: &Summary) -> Result<()> {
+    let (mut old, mut new) = (read_json(&folder.join(SUMMARY_FILE))?, as_json(again)?);
     let stopped = if written.interrupted { &OF_WHOLE_RUNS[..] } else { &[] };
     for figure in OF_THE_MOMENT.iter().chain(stopped) {
         old.as_object_mut().and_then(|all| all.remove(*figure));
         new.as_object_mut().and_then(|all| all.remove(*figure));
     }
-    match first_difference("", &old, &new) {
+    compare_values(folder, &old, &new)
+}
+
+fn compare_values(folder: &Path, old: &Value, new: &Value) -> Result<()> {
+    let name = folder.join(SUMMARY_FILE).display().to_string();
+    match first_difference("", old, new) {
         None => Ok(()),
-        Some((place, old, new)) => {
-            forged("summary.json", &format!("{place} is {old} there, and comes out as {new}")).fail()
-        }
+        Some((place, old, new)) => forged(&name, &format!("{place} is {old} there, and comes out as {new}")).fail(),
     }
+}
+
+fn as_json(value: &impl Serialize) -> Result<Value> {
+    serde_json::to_value(value)
+        .map_err(|error| Box::new(Diagnostic::new("E-IO", format!("cannot write the figures as JSON: {error}"))))
+}
+
+fn read_json(path: &Path) -> Result<Value> {
+    let text = read_stored(path)?;
+    serde_json::from_str(&text.text).map_err(|error| Box::new(forged(&path.display().to_string(), &error.to_string())))
 }
 
 /// The place of the first value that differs, with both values.
 fn first_difference(place: &str, old: &Value, new: &Value) -> Option<(String, Value, Value)> {
     match (old, new) {
-        (Value::Object(old), Value::Object(new)) if old.keys().eq(new.keys()) => old.iter().find_map(|(key, value)| {
+        (Value::Object(old), Value::Object(new)) => old.keys().chain(new.keys()).find_map(|key| {
             let place = if place.is_empty() { key.clone() } else { format!("{place}.{key}") };
-            first_difference(&place, value, &new[key])
+            // One that is not there differs from any.
+            let of = |all: &serde_json::Map<String, Value>| all.get(key).cloned();
+            match (of(old), of(new)) {
+                (Some(old), Some(new)) => first_difference(&place, &old, &new),
+                (old, new) => Some((place, old.unwrap_or("nothing".into()), new.unwrap_or("nothing".into()))),
+            }
         }),
         (Value::Array(old), Value::Array(new)) if old.len() == new.len() => (old.iter().zip(new).enumerate())
             .find_map(|(index, (old, new))| first_difference(&format!("{place}[{index}]"), old, new)),
@@ -142,12 +195,18 @@ fn first_difference(place: &str, old: &Value, new: &Value) -> Option<(String, Va
     }
 }
 
-/// The table with all its fields; and the curve, where its file is still there: it is only for people and spreadsheets.
+/// The table with all its fields, and the curve.
 fn compare_files(folder: &Path, plan: &Plan, learned: Option<&Learned>) -> Result<()> {
     let (Some(learned), Ok(run)) = (learned, std::fs::read_to_string(folder.join(RUN_FILE))) else { return Ok(()) };
     let table = policy_to_toml(plan, &learned.policy, Some(&run))?;
     for (name, again) in [(POLICY_FILE, table), (CURVE_FILE, curve_of(plan, learned))] {
-        let Ok(written) = std::fs::read_to_string(folder.join(name)) else { continue };
+        let Ok(written) = std::fs::read_to_string(folder.join(name)) else {
+            // A run that a failure ended has no curve.
+            if folder.join(SUMMARY_FILE).exists() {
+                return forged(name, "it is not there").fail();
+            }
+            continue;
+        };
         let differs = written.lines().zip(again.lines()).position(|(old, new)| old != new);
         let line = differs.unwrap_or_else(|| written.lines().count().min(again.lines().count())) + 1;
         if written != again {
@@ -167,6 +226,6 @@ mod tests {
         let (old, new) = (json!({ "a": [1, { "b": 2 }] }), json!({ "a": [1, { "b": 3 }] }));
         assert_eq!(first_difference("", &old, &new), Some(("a[1].b".to_owned(), json!(2), json!(3))));
         assert_eq!(first_difference("", &old, &old), None);
-        assert_eq!(first_difference("", &json!({ "a": 1 }), &json!({ "b": 1 })).unwrap().0, "");
+        assert_eq!(first_difference("", &json!({ "a": 1 }), &json!({ "a": 1, "b": 1 })).unwrap().0, "b");
     }
 }

@@ -93,10 +93,10 @@ fn finished(out: std::path::PathBuf) -> watch::Finished {
         let mut results = Vec::new();
         for (seed, tested) in run.seeds.iter().zip(tests) {
             // A finished run has it.
-            let Some(untrained) = &seed.untrained else { continue };
+            let Some(lines) = &seed.lines else { continue };
             let log = RunLog { learning: (*seed.learning).clone(), test: seed.tested.clone() };
             let learned = seed.learned.as_deref().cloned();
-            let mut one = SeedRun::new(plan, seed.seed, learned, tested, untrained, &log);
+            let mut one = SeedRun::new(plan, seed.seed, learned, tested, lines, &log);
             one.summary = one.summary.timed(seconds / seeds.len() as f64);
             folder.keep_log(plan, seed.seed, &log)?;
             results.push(SeedResult { run: one, log: (!many).then_some(log) });

@@ -23,7 +23,8 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
     (
         "W-GOAL-CONTACT",
         Kind::Input,
-        "A rule ends the attempt with something good when the body touches something or falls.\n\
+        "A rule ends the attempt with something good when the body touches something or falls, or most goals of the trial came \
+         with a contact.\n\
          Rewards from elsewhere often pay a little for leaving the track; with 'then recover' that makes a goal of every crash. \
          If a crash is no goal, write 'then fail'.",
     ),
@@ -103,7 +104,7 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
     (
         "W-SUCCESS-IDLE",
         Kind::Input,
-        "A robot that knows nothing, or one that does not look, meets every condition of the script's success.\n\
+        "A robot that knows nothing, or one that does not look, meets every condition of success, the script's own or the default.\n\
          Such a success says nothing. Name what the robot must do: laps, goals, or so many times the metres for each failure \
          that an untrained robot makes.",
     ),

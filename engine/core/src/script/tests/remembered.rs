@@ -6,7 +6,7 @@ use crate::judge::{Judge, ViewFacts};
 use crate::outcome::Then;
 
 /// The rewards of steps in which the beam ahead has these ranges; the period is half a second.
-fn ahead(judge: &mut Judge, ranges_m: &[f32]) -> Vec<f64> {
+pub(super) fn ahead(judge: &mut Judge, ranges_m: &[f32]) -> Vec<f64> {
     let rewards = ranges_m.iter().map(|range_m| {
         judge.facts_mut().ranges_m.fill(*range_m);
         judge.judge().unwrap().reward
@@ -152,7 +152,7 @@ fn what_cannot_be_remembered_is_told_with_the_way_out() {
     told("rule \"b\" when change(laser.front, 700) > 1 => 1;", "E-SCRIPT-WINDOW", "700", "change(x, 10)");
     told("fn f(x) { x } rule \"b\" when change(f(1.0)) > 0.0 => 1;", "E-SCRIPT-WINDOW", "change", "measure m = ...");
     told("fn f(x) { change(x) }", "E-SCRIPT-WINDOW", "change", "facts.m");
-    told("fn f(x) { x } measure m = f(laser.front);", "E-SCRIPT-WINDOW", "f", "measure m = ...");
+    told("fn f(x) { x } measure m = f(laser.front);", "E-SCRIPT-WINDOW", "f", "functions of the table");
     told("measure laser = 1.0;", "E-SCRIPT-NAME", "laser", "another name");
     told("measure m = laser.frnt;", "E-SCRIPT-FACT", "frnt", "'front'");
     told("rule \"b\" when previous.laser.frnt > 1.0 => 1;", "E-SCRIPT-FACT", "frnt", "'front'");

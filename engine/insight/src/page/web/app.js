@@ -97,12 +97,12 @@ function setPhase(phase) {
   const success = { true: 'success', false: 'no success', null: 'success cannot be told' };
   $('verdict').hidden = !verdict;
   $('verdict').replaceChildren(...(verdict ? [
-    el('p', {}, el('b', { text: success[verdict.success] }), ...(verdict.success ? [] : [`: ${verdict.text.replace(/^(no|cannot be told): /, '')}`])),
+    el('p', {}, el('b', { text: success[verdict.success] }), ...(verdict.success ? [] : [`: ${verdict.text.replace(/^(no: |cannot be told:? )/, '')}`])),
     el('ul', {}, ...verdict.conditions.map((one) => el('li', { class: one.holds ? 'holds' : 'fails', title: one.condition },
       el('b', { text: `${one.holds ? '✓' : '✗'} ${one.name}` }), ` ${one.figures}`))),
   ] : []));
   $('facts').replaceChildren(
-    ...(seed.curve.length ? ['learned ', el('b', { text: seed.learned_at === null ? 'not yet' : `at step ${whole(seed.learned_at)}` })] : ['policies combined']),
+    ...(seed.curve.length ? ['learned ', el('b', { text: seed.learned_at === null ? (seed.tells_learning ? 'not yet' : 'cannot be told') : `at step ${whole(seed.learned_at)}` })] : ['policies combined']),
     ...(test ? [' · test: ', el('b', { text: `${short(test.failures_per_1000)} failures` }), ' in 1,000 steps, ',
       el('b', { text: `${short(test.mean_speed)} m/s` }), ...(test.forbidden_per_1000 === undefined ? [] : [', guards in ', el('b', { text: short(test.forbidden_per_1000) }), ' of 1,000 steps']), ...(test.laps === null ? [] : [', ', el('b', { text: `${short(test.laps)} laps` })])] : []),
   );

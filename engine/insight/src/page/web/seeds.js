@@ -21,7 +21,7 @@ class Seeds {
     const cells = ({ test, verdict }) => [
       words[verdict?.success ?? null], short(test.failures_per_1000),
       ...(route ? [short(test.net_route_m)] : []), ...(goals ? [whole(test.goals)] : []),
-      verdict && !verdict.success ? verdict.text.replace(/^(no|cannot be told): /, '') : '',
+      verdict && !verdict.success ? verdict.text.replace(/^(no: |cannot be told:? )/, '') : '',
     ];
     this.rows.clear();
     const rows = tested.map(({ seed, index }) => {

@@ -1,0 +1,116 @@
+//! Scripts that were once called a success and are none.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use engine::diagnostic::SourceText;
+use engine::experiment::{Overrides, Plan, RunLog, Summary, in_parallel, run_seed};
+use engine::script::Behaviour;
+use engine::verdict::Because;
+
+use crate::support::root;
+
+const HEAD: &str = "world(\"room\"); filter(\"sobel\", #{ threshold: 60 });\n";
+const ONE_STATE: &str = "grid(#{ rows: 1, columns: 1, occupied: 1.0 });\n";
+const HIT: &str = "rule \"hit\" when robot.contact => -1 then recover;\n";
+
+/// What a run of some seeds comes to.
+fn runs(script: &str, steps: Option<u64>, test_steps: u64, seeds: u64) -> Vec<Summary> {
+    let text = format!("{HEAD}{script}");
+    let behaviour = Behaviour::parse("own", SourceText::new(root().join("scripts/own.rhai"), text)).unwrap();
+    let overrides = Overrides { steps, test_steps: Some(test_steps), ..Overrides::default() };
+    let plan = Plan::new(Arc::new(behaviour), &overrides).unwrap();
+    let seeds: Vec<u64> = (1..=seeds).collect();
+    let run = |seed| {
+        let run = run_seed(&plan, seed, &AtomicBool::new(false), &|_| (), &mut RunLog::off());
+        run.map(|run| run.summary).map_err(|broken| broken.error)
+    };
+    in_parallel(&seeds, 0, run).unwrap()
+}
+
+fn assert_none(script: &str, steps: Option<u64>, test_steps: u64, seeds: u64) -> Vec<Summary> {
+    let runs = runs(script, steps, test_steps, seeds);
+    let done: Vec<_> = runs.iter().filter(|run| run.verdict.is_success()).map(|run| run.seed).collect();
+    assert!(done.is_empty(), "{script}: {done:?} {:?}", runs[0].verdict);
+    runs
+}
+
+#[test]
+fn a_robot_that_knows_nothing_is_tested_over_the_same_steps() {
+    let wall = std::fs::read_to_string(root().join("scripts/wall.rhai")).unwrap();
+    let rules = wall.lines().filter(|line| line.starts_with("rule")).collect::<Vec<_>>().join("\n");
+    let drives = format!("{rules}\nsuccess \"drives round\" when test.laps >= 5 && test.off_route < 0.05;");
+    let runs = assert_none(&drives, Some(1), 5000, 4);
+    assert!(runs.iter().all(|run| run.base_lines.untrained.steps == 5000));
+    for condition in [
+        "test.distance_m > 2 * untrained.distance_m",
+        "test.attempts > 2 * untrained.attempts",
+        "test.laps > 2 * untrained.laps",
+        "test.net_route_m > 1.5 * untrained.net_route_m",
+        "test.greatest(\"m\") > 3000",
+    ] {
+        assert_none(&format!("{HIT}measure m = time.step;\nsuccess \"s\" when {condition};"), Some(1), 5000, 1);
+    }
+}
+
+#[test]
+fn being_put_back_every_second_beats_no_chance() {
+    let script = format!("rule \"time\" when time.attempt_s > 0.9 => 0 then restart;\n{HIT}");
+    assert_none(&script, Some(1), 20_000, 1);
+}
+
+#[test]
+fn a_robot_that_does_not_look_is_no_success_by_being_put_back() {
+    let near = "rule \"time\" when time.attempt_s > 2 => 0 then restart;
+         rule \"too close\" when laser.nearest <= 0.45 => -1 then recover;";
+    assert_none(&format!("{ONE_STATE}{near}"), None, 5000, 4);
+    let turned = "actions([[0.4, 0.0], [0.4, 0.8], [0.4, -0.8], [0.05, 0.8]]);
+         rule \"time\" when time.attempt_s > 3 => 0 then restart;
+         rule \"turned\" when abs(odometry.turned_deg) > 60 => -1 then fail;";
+    assert_none(&format!("{ONE_STATE}{turned}"), None, 5000, 4);
+    let there = "recovery(\"start\"); rule \"hit\" when robot.contact => -1 then fail;
+         rule \"there\" when odometry.forward_m > 2 => 1 then goal;";
+    let runs = assert_none(&format!("{ONE_STATE}{there}"), None, 5000, 4);
+    assert!(runs.iter().any(|run| run.verdict.why == Because::BlindToo && run.base_lines.blind.is_some()));
+}
+
+#[test]
+fn a_crash_that_is_called_a_goal_is_met_without_looking() {
+    for touch in [
+        "rule \"touch\" when robot.contact => 1 then recover; rule \"time\" when time.attempt_s > 30 => -1 then recover;",
+        "measure hit = robot.contact; rule \"touch\" when hit => 1 then goal;",
+        "rule \"touch\" when laser.nearest <= 0.22 => 1 then recover;
+         rule \"time\" when time.attempt_s > 8 => -1 then recover;",
+    ] {
+        assert_none(touch, None, 5000, 2);
+    }
+}
+
+#[test]
+fn what_a_spinning_robot_meets_is_no_success() {
+    let spins = "rule \"spin\" when abs(action.angular) > 0.7 && action.linear < 0.1 => 0.2;
+         rule \"hit\" when robot.contact => -1 then fail;
+         success \"safe\" when test.contacts_per_1000 < 2;";
+    assert_none(spins, None, 5000, 2);
+    let safe = "rule \"hit\" when robot.contact => -1 then recover;
+         success \"is safe\" when test.failures_per_1000 <= 2;";
+    assert_none(safe, None, 5000, 2);
+    let still = "rule \"still\" when time.attempt_s >= 10 && odometry.away_m < 0.6 => 1 then goal;
+         rule \"away\" when odometry.away_m > 0.6 => -1 then fail;";
+    assert_none(still, None, 5000, 2);
+}
+
+#[test]
+fn a_condition_that_always_holds_does_not_make_a_reward_a_success() {
+    let turns = format!("rule \"turn\" when abs(action.angular) > 0.5 => 0.1;\n{HIT}");
+    let measured = format!("measure r = action.linear < 0.1;\nrule \"slow\" when r => 0.1;\n{HIT}");
+    for script in [
+        format!("{HIT}success \"earns\" when test.reward_per_1000 > -5; success \"always\" when test.laps > -1e9;"),
+        format!("{HIT}success \"earns\" when test.reward_per_1000 > -5 || test.laps > 1e9;"),
+        format!("{turns}success \"turns\" when test.per_1000(\"turn\") > 500;"),
+        format!("{measured}success \"stands\" when test.mean(\"r\") > 0.9;"),
+    ] {
+        let runs = assert_none(&script, None, 5000, 2);
+        assert!(runs.iter().all(|run| run.verdict.why != Because::Holds), "{script}");
+    }
+}
