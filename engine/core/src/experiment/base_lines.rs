@@ -107,8 +107,8 @@ impl Blind {
 
 impl Chooser for Blind {
     fn choose(&mut self, _: &[usize], allowed: Allowed) -> Result<Choice> {
-        let weights = || self.weights.iter().enumerate();
-        let weights = || weights().map(|(action, weight)| if allowed.contains(action) { *weight } else { 0 });
+        let given = |(action, weight): (usize, &u64)| if allowed.contains(action) { *weight } else { 0 };
+        let weights = || self.weights.iter().enumerate().map(given);
         let sum: u64 = weights().sum();
         if sum == 0 {
             let action = any_of(self.weights.len(), allowed, &mut self.random);
@@ -134,7 +134,7 @@ mod tests {
         let mut blind = Blind::new(vec![1, 0, 3], 7);
         let mut counts = [0; 3];
         for _ in 0..4000 {
-            counts[blind.choose(&[0], Allowed::all()).unwrap().action] += 1;
+            counts[blind.choose(&[0], Allowed::ALL).unwrap().action] += 1;
         }
         // 1,000 and 3,000 within four times the spread of sqrt(4000 / 4 * 3 / 4) = 27.
         assert!((892..=1108).contains(&counts[0]) && counts[1] == 0, "{counts:?}");
