@@ -14,12 +14,14 @@ mod learning;
 mod ledger;
 mod legs;
 mod measured;
+
 mod outlook;
 mod parts;
 mod plan;
 mod playback;
 mod probes;
 mod reasons;
+mod recorded_movers;
 mod rescore;
 mod run_log;
 mod seed_run;
@@ -46,9 +48,11 @@ pub use eyes::Eyes;
 pub use learning::{BrokenOff, Learned, Learning, Progress, learn, learn_into};
 pub use ledger::{Ledger, LedgerLeg, MOST_STEPS, Record, RecordShape};
 pub use legs::Leg;
+
 pub use plan::{Overrides, Plan};
 pub use playback::{Phase, Playback};
 pub use reasons::{FactReasons, PartReasons, RuleReasons, StateCells, StepReasons, beam_angle_deg};
+pub use recorded_movers::RecordedMovers;
 pub use rescore::{Rescored, RuleChange, RuleScore, plan_with_rules_of, rescore};
 pub use run_log::{CHUNK_STEPS, DIGEST_BYTES, RunLog, chained};
 pub use seed_run::{SeedRun, run_seed};

@@ -14,6 +14,8 @@ pub struct Trail {
     pub legs: Vec<Vec<[f32; 2]>>,
     /// Where the script asked for recovery.
     pub failures: Vec<[f32; 2]>,
+    /// Where everything that drives by itself was at the end.
+    pub movers: Vec<Pose>,
 }
 
 impl Trail {
@@ -36,7 +38,8 @@ impl Recorder {
     pub(super) fn new(steps: u64, robot: &impl Robot) -> Self {
         let mut leg = Vec::with_capacity(steps as usize + 1);
         leg.extend(place(robot));
-        Self { trail: Trail { legs: vec![leg], failures: Vec::new() }, left: steps }
+        let movers = (0..).map_while(|index| robot.mover(index)).collect();
+        Self { trail: Trail { legs: vec![leg], failures: Vec::new(), movers }, left: steps }
     }
 
     pub(super) fn finish(self) -> Trail {
@@ -55,6 +58,9 @@ impl<R: Robot> Observer<R> for Recorder {
             }
             if step.ending() == Some(Ending::Failure) {
                 self.trail.failures.push(place);
+            }
+            for (index, mover) in self.trail.movers.iter_mut().enumerate() {
+                *mover = cycle.robot().mover(index).unwrap_or(*mover);
             }
         }
         self.left = self.left.saturating_sub(1);

@@ -69,10 +69,17 @@ impl Recovery {
     /// beginning; the wanted place itself is there in any case.
     fn farther_behind<'a>(&self, world: &'a World) -> impl Iterator<Item = Pose> + use<'a> {
         let distance_m = self.settings.distance_m;
-        world.prey_route().into_iter().flat_map(move |(route, along_m)| {
-            let room_m = if route.closed { route.length_m() } else { along_m };
+        world.prey_route().into_iter().flat_map(move |(route, along_m, back)| {
+            let room_m = match back {
+                _ if route.closed => route.length_m(),
+                true => route.length_m() - along_m,
+                false => along_m,
+            };
             let count = ((room_m - distance_m).max(0.0) / SPACING_M) as usize;
-            (0..=count).map(move |index| route.pose_at(along_m - distance_m - index as f64 * SPACING_M))
+            (0..=count).map(move |index| match index as f64 * SPACING_M {
+                farther_m if back => turned(route.pose_at(along_m + distance_m + farther_m)),
+                farther_m => route.pose_at(along_m - distance_m - farther_m),
+            })
         })
     }
 
@@ -109,6 +116,11 @@ impl Recovery {
         let message = format!("the robot cannot recover: every {places} of world '{name}' is blocked");
         Box::new(Diagnostic::new("E-RECOVERY-BLOCKED", message).help(help))
     }
+}
+
+/// The same place, looking the other way.
+fn turned(pose: Pose) -> Pose {
+    Pose::new(pose.x_m, pose.y_m, pose.yaw_rad + std::f64::consts::PI)
 }
 
 fn lap(layout: &Layout) -> Option<&Route> {

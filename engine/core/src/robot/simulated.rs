@@ -68,6 +68,7 @@ impl Robot for SimulatedRobot {
     }
 
     fn recover(&mut self) -> Result<()> {
+        self.world.begin_attempt();
         let pose = self.recovery.pose(&self.world)?;
         self.world.place(0, pose);
         self.motion = Motion::default();
@@ -80,8 +81,8 @@ impl Robot for SimulatedRobot {
         Some(Whereabouts { pose: body.pose, z_m: body.z_m })
     }
 
-    fn prey(&self) -> Option<Pose> {
-        self.world.prey()
+    fn mover(&self, index: usize) -> Option<Pose> {
+        self.world.mover(index)
     }
 
     fn gap_m(&self, mover: usize) -> Option<f64> {

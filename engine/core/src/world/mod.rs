@@ -8,11 +8,13 @@ mod contact;
 mod drivetrain;
 mod floor_squares;
 mod layout;
+mod movements;
 mod mover;
 mod obstacle;
 mod route;
 mod route_progress;
 pub mod scene;
+mod schedule;
 mod stance;
 mod terrain;
 #[cfg(test)]
@@ -23,11 +25,12 @@ mod vehicle;
 pub use body::{Body, Motion};
 pub(crate) use floor_squares::FloorSquares;
 pub use layout::Layout;
+pub use movements::Movements;
 pub use mover::Mover;
 pub use route::Route;
 pub(crate) use route_progress::RouteProgress;
 
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Point2, Pose, Twist};
 use crate::random::{Random, Stream};
 use crate::settings::RobotSettings;
 use drivetrain::Drivetrain;
@@ -56,7 +59,7 @@ pub struct World {
     material: usize,
     period_s: f64,
     periods: u64,
-    mover_speed: f64,
+    movements: Movements,
 }
 
 impl World {
@@ -75,9 +78,10 @@ impl World {
         let material = layout.scene.parts().materials.iter().position(|material| material.name == layout::PLAIN);
         let material = material.unwrap_or(layout.scene.parts().floor);
         let solids = vehicles.iter().map(|vehicle| vehicle.solid(material)).collect();
-        let traffic = Traffic::new(&layout.movers, &layout.routes, solids);
+        let movements = Movements::new(Arc::clone(&layout), seed, 1.0);
+        let traffic = Traffic::new(&layout.movers, &movements, solids);
         let motions = vec![Motion::default(); vehicles.len()];
-        let mut world = Self { layout, vehicles, motions, traffic, material, period_s, periods: 0, mover_speed: 1.0 };
+        let mut world = Self { layout, vehicles, motions, traffic, material, period_s, periods: 0, movements };
         for index in 1..world.vehicles.len() {
             let safe = world.layout.starts.iter().copied().find(|start| world.is_safe(index, *start));
             safe.into_iter().for_each(|start| world.place(index, start));
@@ -88,7 +92,15 @@ impl World {
     /// This world with every mover `speed` times as fast as its file says.
     #[must_use]
     pub fn with_mover_speed(self, speed: f64) -> Self {
-        Self { mover_speed: speed, ..self }
+        Self { movements: self.movements.scaled(speed), ..self }
+    }
+
+    /// An attempt begins: movers whose file says so draw their speed, or begin anew.
+    pub fn begin_attempt(&mut self) {
+        if self.movements.live() {
+            self.movements.begin();
+            self.traffic.arrange(&self.layout.movers, &self.movements);
+        }
     }
 
     /// Puts a body at rest at `pose`, on the highest platform or ramp there or else on the floor.
@@ -119,7 +131,9 @@ impl World {
         }
         self.periods += 1;
         if self.traffic.has_movers() {
-            self.traffic.arrange(&self.layout.movers, &self.layout.routes, self.mover_time_s());
+            let middle = |vehicle: &Vehicle| Point2::new(vehicle.stance().pose.x_m, vehicle.stance().pose.y_m);
+            self.movements.advance(self.periods as f64 * self.period_s, self.vehicles.iter().map(middle));
+            self.traffic.arrange(&self.layout.movers, &self.movements);
             for (motion, vehicle) in self.motions.iter_mut().zip(&self.vehicles) {
                 motion.contact |= self.traffic.touches(vehicle.shape(), vehicle.stance());
             }
@@ -164,10 +178,16 @@ impl World {
         self.traffic.seen_by(index)
     }
 
+    /// Where a mover is now.
+    #[must_use]
+    pub fn mover(&self, index: usize) -> Option<Pose> {
+        (index < self.layout.movers.len()).then(|| self.movements.pose(index))
+    }
+
     /// Where the first mover is now.
     #[must_use]
     pub fn prey(&self) -> Option<Pose> {
-        self.layout.movers.first().map(|mover| mover.pose_at(&self.layout.routes, self.mover_time_s()))
+        self.mover(0)
     }
 
     /// Least distance between a body and the mover with this index, seen from above, metres: 0 where they touch. `None` if
@@ -180,17 +200,10 @@ impl World {
         self.traffic.gap_m(&self.vehicles[index].solid(self.material), &self.layout.movers, mover)
     }
 
-    /// The route of the first mover, and how far along it the mover is now, metres.
+    /// The route of the first mover, how far along it the mover is now, metres, and whether it comes back along it.
     #[must_use]
-    pub(crate) fn prey_route(&self) -> Option<(&Route, f64)> {
-        let mover = self.layout.movers.first()?;
-        let route = self.layout.routes.get(mover.route)?;
-        Some((route, mover.along_m(route, self.mover_time_s())))
-    }
-
-    /// The time by which movers go.
-    fn mover_time_s(&self) -> f64 {
-        self.time_s() * self.mover_speed
+    pub(crate) fn prey_route(&self) -> Option<(&Route, f64, bool)> {
+        self.movements.first_on_route()
     }
 
     /// Time since the world began, seconds. Placing a body does not turn it back.

@@ -1,6 +1,7 @@
 //! How a body drives, touches, climbs and falls.
 
 mod bodies;
+mod movers;
 
 use super::*;
 use crate::diagnostic::SourceText;

@@ -28,8 +28,6 @@ pub struct WorldPlan<'a> {
     pub routes: &'a [Route],
     /// What drives by itself.
     pub movers: &'a [Mover],
-    /// What a step is on the clock of the movers, seconds.
-    pub step_s: f64,
 }
 
 impl<'a> WorldPlan<'a> {
@@ -42,7 +40,6 @@ impl<'a> WorldPlan<'a> {
             lap: layout.lap.map(|lap| &layout.routes[lap]),
             routes: &layout.routes,
             movers: &layout.movers,
-            step_s: plan.settings.run.period_s * plan.settings.movers.speed,
             ..Self::standing(layout.scene.parts())
         }
     }
@@ -50,7 +47,7 @@ impl<'a> WorldPlan<'a> {
     /// Solids alone, none of them driven on.
     #[must_use]
     pub fn standing(parts: &'a SceneParts) -> Self {
-        Self { parts, driven_on: vec![false; parts.solids.len()], lap: None, routes: &[], movers: &[], step_s: 0.0 }
+        Self { parts, driven_on: vec![false; parts.solids.len()], lap: None, routes: &[], movers: &[] }
     }
 
     /// The ways of the movers that are not the lap.
@@ -106,12 +103,11 @@ impl<'a> WorldPlan<'a> {
         }
     }
 
-    /// Draws the movers where they are after so many steps.
-    pub(super) fn draw_movers(&self, sheet: &mut Sheet, plot: &Plot, steps: usize) {
-        for mover in self.movers {
-            let at = mover.pose_at(self.routes, steps as f64 * self.step_s);
+    /// Draws the movers where they are.
+    pub(super) fn draw_movers(&self, sheet: &mut Sheet, plot: &Plot, poses: &[Pose]) {
+        for (mover, at) in self.movers.iter().zip(poses) {
             for solid in &mover.solids {
-                let outline = outline(&placed(solid, at), plot);
+                let outline = outline(&placed(solid, *at), plot);
                 sheet.area(outline.clone(), self.colour(solid.material));
                 sheet.line(closed(outline), 1.0, TEXT);
             }

@@ -126,7 +126,7 @@ fn odd_curves_are_drawn() {
 #[test]
 fn the_same_input_gives_the_same_bytes() {
     assert_eq!(curve(&rising(5), Some(900)), curve(&rising(5), Some(900)));
-    let path = Trail { legs: vec![circle(500)], failures: vec![[1.0, 1.0]] };
+    let path = Trail { legs: vec![circle(500)], failures: vec![[1.0, 1.0]], ..Trail::default() };
     assert_eq!(both(&square(), &path), both(&square(), &path));
 }
 
@@ -170,8 +170,12 @@ fn a_mover_stands_where_it_is_at_the_end_of_the_shown_time_and_its_way_is_drawn(
         boxes = [{ centre_m = [0, 0, 0.2], size_m = [0.4, 0.4, 0.4], material = \"green\" }]\n";
     let layout = Layout::parse(SourceText::new("guard.toml", text), &BodyShape::pioneer2at()).unwrap();
     let (routes, movers) = (layout.routes.as_slice(), layout.movers.as_slice());
-    let world = WorldPlan { routes, movers, step_s: 0.5, ..WorldPlan::standing(layout.scene.parts()) };
-    let trail = |steps: usize| Trail { legs: vec![vec![[0.0, 0.0]; steps + 1]], failures: vec![] };
+    let world = WorldPlan { routes, movers, ..WorldPlan::standing(layout.scene.parts()) };
+    let trail = |steps: usize| Trail {
+        legs: vec![vec![[0.0, 0.0]; steps + 1]],
+        failures: vec![],
+        movers: vec![movers[0].pose_at(routes, 0.5 * steps as f64)],
+    };
     let panels: [(&str, &Trail); 2] = [("early", &trail(20)), ("late", &trail(80))];
     let svg = trajectories(&TrajectoryData { title: "guard", world: &world, panels: &panels }).unwrap().svg;
     let corners: Vec<f64> = (svg.lines().filter(|line| line.contains("fill=\"#01c803\"")))
@@ -191,11 +195,15 @@ fn odd_worlds_and_paths_are_drawn() {
     let worlds = [vec![], vec![far(0.0)], vec![far(-1e7), far(1e7)], vec![wall([0.0, 0.0], [0.0, 3000.0])]];
     let paths = [
         Trail::default(),
-        Trail { legs: vec![vec![]], failures: vec![] },
-        Trail { legs: vec![vec![[1.0, 1.0]]], failures: vec![[1.0, 1.0]] },
-        Trail { legs: vec![vec![[2.0, 2.0]; 300]], failures: vec![] },
-        Trail { legs: vec![vec![[f32::NAN, 0.0], [f32::INFINITY, 1.0], [0.0, 1.0]]], failures: vec![[f32::NAN; 2]] },
-        Trail { legs: vec![vec![[0.0, 0.0], [1e30, -1e30]]], failures: vec![] },
+        Trail { legs: vec![vec![]], failures: vec![], ..Trail::default() },
+        Trail { legs: vec![vec![[1.0, 1.0]]], failures: vec![[1.0, 1.0]], ..Trail::default() },
+        Trail { legs: vec![vec![[2.0, 2.0]; 300]], failures: vec![], ..Trail::default() },
+        Trail {
+            legs: vec![vec![[f32::NAN, 0.0], [f32::INFINITY, 1.0], [0.0, 1.0]]],
+            failures: vec![[f32::NAN; 2]],
+            ..Trail::default()
+        },
+        Trail { legs: vec![vec![[0.0, 0.0], [1e30, -1e30]]], failures: vec![], ..Trail::default() },
     ];
     for solids in worlds {
         for path in &paths {
@@ -299,8 +307,9 @@ fn a_state_that_was_hardly_met_looks_unsure() {
 
 #[test]
 fn the_paths_of_many_seeds_have_one_that_is_strong() {
-    let trails: Vec<Trail> =
-        (0..3).map(|seed| Trail { legs: vec![circle(50)], failures: vec![[1.0, 1.0]; seed] }).collect();
+    let trails: Vec<Trail> = (0..3)
+        .map(|seed| Trail { legs: vec![circle(50)], failures: vec![[1.0, 1.0]; seed], ..Trail::default() })
+        .collect();
     let (parts, all) = (square(), trails.iter().collect::<Vec<_>>());
     let data = PathsData { title: "all", world: &WorldPlan::standing(&parts), paths: &all, strong: (1, 7) };
     let picture = paths(&data).unwrap();
@@ -314,7 +323,7 @@ fn the_paths_of_many_seeds_have_one_that_is_strong() {
 
 #[test]
 fn the_first_row_of_a_certainty_grid_is_at_the_bottom() {
-    let path = Trail { legs: vec![vec![[0.5, 0.5], [1.5, 0.5]]], failures: vec![] };
+    let path = Trail { legs: vec![vec![[0.5, 0.5], [1.5, 0.5]]], failures: vec![], ..Trail::default() };
     let picture = certainty_grid("map", &[0, 0, 255, 255], 2, 1.0, [0.0, 0.0], &path).unwrap();
     assert_well_formed(&picture.svg);
     let image = pixels(&picture);

@@ -1,6 +1,7 @@
 //! A world file, read and checked: the scene, the starts, the routes and the movers.
 
 mod build;
+mod movers;
 mod reader;
 pub(crate) mod schema;
 mod starts;

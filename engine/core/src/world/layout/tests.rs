@@ -1,5 +1,7 @@
 //! Every mistake in a world file is told at its place, with what to write instead.
 
+mod movers;
+
 use super::schema::{FILE, FileKey, KeyForm};
 use super::*;
 use crate::diagnostic::Kind;
