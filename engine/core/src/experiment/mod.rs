@@ -5,6 +5,7 @@
 mod certainty;
 mod choosers;
 mod combination;
+mod course;
 mod cycle;
 mod digest;
 mod disagreement;

@@ -40,6 +40,11 @@ pub trait Robot {
         None
     }
 
+    /// The world's start at which it was put last, by its index there; nothing if it was put elsewhere.
+    fn start(&self) -> Option<usize> {
+        None
+    }
+
     /// Where the thing with this index among those that drive by themselves is, if there is one and its place is known.
     fn mover(&self, _index: usize) -> Option<Pose> {
         None

@@ -19,6 +19,8 @@ pub struct SimulatedRobot {
     recovery: Recovery,
     motion: Motion,
     moved: bool,
+    /// The start at which it was put last, if it was one.
+    start: Option<usize>,
 }
 
 impl SimulatedRobot {
@@ -32,13 +34,13 @@ impl SimulatedRobot {
         let camera = Camera::new(&layout.scene, &settings.camera, seed);
         let laser = Laser::new(&layout.scene, &settings.laser, seed);
         let mut recovery = Recovery::new(&settings.recovery, seed);
-        let start = recovery.pose(&world)?;
-        world.place(0, start);
+        let put = recovery.pose(&world)?;
+        world.place(0, put.pose);
         // Noise would hide a blank image from the test.
         let mut quiet = Camera::new(&layout.scene, &CameraSettings { noise: 0.0, ..settings.camera.clone() }, seed);
         self_test(&mut quiet, &world.body(0).world_from_robot(), world.seen_by(0))?;
         let (watch, motion) = (CameraWatch::new(), Motion::default());
-        Ok(Self { world, camera, laser, watch, recovery, motion, moved: false })
+        Ok(Self { world, camera, laser, watch, recovery, motion, moved: false, start: put.start })
     }
 
     /// The truth, for tests and reports only.
@@ -69,8 +71,9 @@ impl Robot for SimulatedRobot {
 
     fn recover(&mut self) -> Result<()> {
         self.world.begin_attempt();
-        let pose = self.recovery.pose(&self.world)?;
-        self.world.place(0, pose);
+        let put = self.recovery.pose(&self.world)?;
+        self.world.place(0, put.pose);
+        self.start = put.start;
         self.motion = Motion::default();
         self.moved = true;
         Ok(())
@@ -79,6 +82,10 @@ impl Robot for SimulatedRobot {
     fn whereabouts(&self) -> Option<Whereabouts> {
         let body = self.world.body(0);
         Some(Whereabouts { pose: body.pose, z_m: body.z_m })
+    }
+
+    fn start(&self) -> Option<usize> {
+        self.start
     }
 
     fn mover(&self, index: usize) -> Option<Pose> {

@@ -10,6 +10,7 @@ mod bodies;
 mod compile;
 mod draft;
 mod fact_names;
+mod measurable;
 mod measures;
 mod memory;
 mod names;
@@ -36,8 +37,8 @@ mod unread;
 mod words;
 
 pub use behaviour::Behaviour;
-pub(crate) use behaviour::Measurable;
 pub(crate) use draft::Draft;
+pub(crate) use measurable::Measurable;
 pub use outline::{BeamLoop, Compared, Condition, Gathers, NamedFact, RuleOutline, ScriptOutline, UnusedName};
 pub use reference::{definitions, reference};
 pub(crate) use unread::Unread;

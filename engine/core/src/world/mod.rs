@@ -8,6 +8,7 @@ mod contact;
 mod drivetrain;
 mod floor_squares;
 mod layout;
+pub(crate) mod marks;
 mod movements;
 mod mover;
 mod obstacle;
@@ -25,6 +26,7 @@ mod vehicle;
 pub use body::{Body, Motion};
 pub(crate) use floor_squares::FloorSquares;
 pub use layout::Layout;
+pub use marks::{Circle, Gate, Start};
 pub use movements::Movements;
 pub use mover::Mover;
 pub use route::Route;
@@ -69,7 +71,7 @@ impl World {
     /// The first body draws the same random numbers whether there are others or not.
     #[must_use]
     pub fn new(layout: Arc<Layout>, bodies: &[RobotSettings], period_s: f64, seed: u64) -> Self {
-        let start = layout.starts.first().copied().unwrap_or_default();
+        let start = layout.starts.first().map_or(Pose::default(), |start| start.pose);
         let vehicle = |(index, robot): (u32, &RobotSettings)| {
             let drive = Drivetrain::new(robot, period_s, Random::of_body(seed, Stream::Drive, index));
             Vehicle::new(robot.body, drive, &layout, start, bodies.len().saturating_sub(1))
@@ -83,7 +85,7 @@ impl World {
         let motions = vec![Motion::default(); vehicles.len()];
         let mut world = Self { layout, vehicles, motions, traffic, material, period_s, periods: 0, movements };
         for index in 1..world.vehicles.len() {
-            let safe = world.layout.starts.iter().copied().find(|start| world.is_safe(index, *start));
+            let safe = world.layout.starts.iter().map(|start| start.pose).find(|start| world.is_safe(index, *start));
             safe.into_iter().for_each(|start| world.place(index, start));
         }
         world

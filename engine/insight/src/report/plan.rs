@@ -6,7 +6,7 @@ use super::sheet::{FRAME, PAPER, Sheet, TEXT};
 use engine::experiment::Plan;
 use engine::geometry::{Point2, Pose};
 use engine::world::scene::{SceneParts, Shape, Solid};
-use engine::world::{Mover, Route};
+use engine::world::{Circle, Gate, Mover, Route};
 
 /// The outline of what stands.
 pub(super) const EDGE: Tint = Tint::hex(0x484f58);
@@ -28,6 +28,10 @@ pub struct WorldPlan<'a> {
     pub routes: &'a [Route],
     /// What drives by itself.
     pub movers: &'a [Mover],
+    /// Places to visit.
+    pub places: &'a [Circle],
+    /// Gates to pass.
+    pub gates: &'a [Gate],
 }
 
 impl<'a> WorldPlan<'a> {
@@ -40,6 +44,8 @@ impl<'a> WorldPlan<'a> {
             lap: layout.lap.map(|lap| &layout.routes[lap]),
             routes: &layout.routes,
             movers: &layout.movers,
+            places: &layout.places,
+            gates: &layout.gates,
             ..Self::standing(layout.scene.parts())
         }
     }
@@ -47,7 +53,8 @@ impl<'a> WorldPlan<'a> {
     /// Solids alone, none of them driven on.
     #[must_use]
     pub fn standing(parts: &'a SceneParts) -> Self {
-        Self { parts, driven_on: vec![false; parts.solids.len()], lap: None, routes: &[], movers: &[] }
+        let driven_on = vec![false; parts.solids.len()];
+        Self { parts, driven_on, lap: None, routes: &[], movers: &[], places: &[], gates: &[] }
     }
 
     /// The ways of the movers that are not the lap.
@@ -95,11 +102,27 @@ impl<'a> WorldPlan<'a> {
                 sheet.line(closed(outline), 1.0, if driven_on { FRAME } else { EDGE });
             }
         }
+        self.draw_marks(sheet, plot);
         for way in self.ways() {
             dashed(sheet, &spots(plot, way), 1.0, WAY, FINE);
         }
         if let Some(lap) = self.lap {
             dashed(sheet, &spots(plot, lap), 1.5, LAP, DASHES);
+        }
+    }
+
+    /// Draws the places as circles and the gates as lines from post to post, all of them fine.
+    fn draw_marks(&self, sheet: &mut Sheet, plot: &Plot) {
+        for place in self.places {
+            let round = |part: u8| {
+                let (sin, cos) = libm::sincos(f64::from(part) * std::f64::consts::TAU / 48.0);
+                plot.at(place.centre.x + place.radius_m * cos, place.centre.y + place.radius_m * sin)
+            };
+            dashed(sheet, &(0..=48).map(round).collect::<Vec<_>>(), 1.0, LAP, FINE);
+        }
+        for gate in self.gates {
+            let posts = [gate.right, gate.left].map(|post| plot.at(post.x, post.y));
+            dashed(sheet, &posts, 1.0, LAP, FINE);
         }
     }
 

@@ -4,7 +4,7 @@ use super::Layout;
 use super::reader::{FileRow, read};
 use super::schema::MOST_SOLIDS;
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, nearest_name, printable};
-use crate::geometry::{Point2, Point3, Pose, Vector3};
+use crate::geometry::{Point2, Point3, Vector3};
 use crate::world::route::{Route, rounded};
 use crate::world::scene::{Light, Material, Scene, SceneParts, Shape, Solid, Texture};
 use crate::world::terrain::Terrain;
@@ -41,12 +41,13 @@ pub(super) fn build(source: SourceText) -> Result<Built> {
     let light = builder.light(&file);
     let routes = builder.routes(&file);
     let movers = builder.movers(&file, &routes);
+    let gates = builder.gates(&file);
+    let (starts, places) = (builder.starts(&file, &gates), builder.places(&file));
     builder.has_start(&file);
     let Builder { materials, solids, carries, origins, .. } = builder;
     mistakes.end()?;
     let scene = Scene::new(SceneParts { solids, materials, floor, light });
     let terrain = Terrain::new(&scene, carries);
-    let starts = file.rows("start").iter().map(pose).collect();
     let lap = routes.iter().position(|route| route.name == "lap");
     let name = source.path.file_stem().map_or_else(|| "world".to_owned(), |stem| stem.to_string_lossy().into_owned());
     let layout = Layout {
@@ -54,17 +55,14 @@ pub(super) fn build(source: SourceText) -> Result<Built> {
         source: source.clone(),
         scene: Arc::new(scene),
         starts,
+        places,
+        gates,
         routes,
         lap,
         movers,
         terrain: Arc::new(terrain),
     };
     Ok(Built { layout, file, origins })
-}
-
-fn pose(row: &FileRow) -> Pose {
-    let place = row.numbers("position_m");
-    Pose::new(place[0], place[1], yaw(row))
 }
 
 pub(super) fn yaw(row: &FileRow) -> f64 {
@@ -122,8 +120,11 @@ impl<'a> Builder<'a> {
     }
 
     pub(super) fn twice(&self, what: &str, row: &FileRow) -> Diagnostic {
-        let name = printable(row.text("name").unwrap_or_default());
-        error("E-WORLD-NAME", format!("there are two {what}s with the name '{name}'"))
+        self.twice_named(what, row, row.text("name").unwrap_or_default())
+    }
+
+    pub(super) fn twice_named(&self, what: &str, row: &FileRow, name: &str) -> Diagnostic {
+        error("E-WORLD-NAME", format!("there are two {what}s with the name '{}'", printable(name)))
             .at(self.source, row.span_of("name"), "used before")
             .help("give each its own name")
     }

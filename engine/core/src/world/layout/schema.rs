@@ -110,7 +110,12 @@ const PAINT: &[FileKey] = &[
     YAW,
     MATERIAL,
 ];
-const START: &[FileKey] = &[must("position_m", "metres", PLACE), YAW];
+const START: &[FileKey] =
+    &[may("name", "", KeyForm::Text), must("position_m", "metres", PLACE), YAW, may("gate", "", KeyForm::Text)];
+const CIRCLE: &[FileKey] =
+    &[must("name", "", KeyForm::Text), must("position_m", "metres", PLACE), must("radius_m", "metres", LENGTH)];
+const GATE: &[FileKey] =
+    &[may("name", "", KeyForm::Text), must("right_m", "metres", PLACE), must("left_m", "metres", PLACE)];
 const ROUTE: &[FileKey] = &[
     must("name", "", KeyForm::Text),
     must("points_m", "metres", KeyForm::Points(2)),
@@ -154,6 +159,8 @@ pub(crate) const FILE: &[FileKey] = &[
     may("ramp", "", KeyForm::Tables(BOX, MOST_SOLIDS)),
     may("paint", "", KeyForm::Tables(PAINT, MOST_SOLIDS)),
     may("start", "", KeyForm::Tables(START, 1000)),
+    may("place", "", KeyForm::Tables(CIRCLE, 64)),
+    may("gate", "", KeyForm::Tables(GATE, 64)),
     may("route", "", KeyForm::Tables(ROUTE, 64)),
     may("mover", "", KeyForm::Tables(MOVER, 64)),
 ];
