@@ -26,6 +26,8 @@ pub enum Stream {
     Test = 6,
     /// The choices of a robot that knows nothing, in its test.
     Untrained = 7,
+    /// The speeds of movers that have a range of them.
+    Movers = 9,
 }
 
 /// One stream of random numbers.

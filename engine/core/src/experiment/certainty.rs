@@ -42,7 +42,7 @@ impl CertaintyGrid {
             [[min.x, min.y], [max.x, max.y]]
         });
         let (mut low, mut high) = ([f64::MAX; 2], [f64::MIN; 2]);
-        for point in corners.chain(layout.starts.iter().map(|start| [start.x_m, start.y_m])) {
+        for point in corners.chain(layout.starts.iter().map(|start| [start.pose.x_m, start.pose.y_m])) {
             for axis in 0..2 {
                 low[axis] = low[axis].min(point[axis] - BORDER_M);
                 high[axis] = high[axis].max(point[axis] + BORDER_M);

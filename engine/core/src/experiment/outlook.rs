@@ -66,7 +66,7 @@ impl Plan {
         let along = lap
             .into_iter()
             .flat_map(|route| (0..PLACES).map(|place| route.pose_at(route.length_m() * place as f64 / PLACES as f64)));
-        for place in layout.starts.iter().copied().chain(along) {
+        for place in layout.starts.iter().map(|start| start.pose).chain(along) {
             for heading in 0..HEADINGS {
                 let turn = TAU * heading as f64 / HEADINGS as f64;
                 world.place(0, Pose::new(place.x_m, place.y_m, place.yaw_rad + turn));

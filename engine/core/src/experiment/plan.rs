@@ -157,8 +157,11 @@ impl Plan {
             plan.behaviour.find_unreachable(&plan.settings.laser, height_m, &mut mistakes);
         }
         let movers: Vec<&str> = plan.layout.movers.iter().map(|mover| mover.name.as_str()).collect();
+        let places: Vec<&str> = plan.layout.places.iter().map(|place| place.name.as_str()).collect();
         let (has_route, has_squares) = (plan.layout.lap.is_some(), FloorSquares::fit(&plan.layout));
-        plan.behaviour.find_unmeasurable(&Measurable { has_route, movers: &movers, has_squares }, &mut mistakes);
+        let has_gates = !plan.layout.gates.is_empty();
+        let world = Measurable { has_route, movers: &movers, places: &places, has_gates, has_squares };
+        plan.behaviour.find_unmeasurable(&world, &mut mistakes);
         let robot = ["camera", "laser", "movers", "recovery", "robot", "run"];
         if !robot.iter().any(|call| unread.any_of(call))
             && mistakes.take(SimulatedRobot::new(&plan.layout, &plan.settings, 0)).is_some()

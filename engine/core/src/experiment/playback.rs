@@ -34,11 +34,15 @@ impl Phase {
     /// # Errors
     /// If no start is safe, or the camera shows nothing from there.
     pub fn robot(self, plan: &Plan, seed: u64) -> Result<SimulatedRobot> {
-        let seed = match self {
+        SimulatedRobot::new(&plan.layout, &plan.settings, self.seed(seed))
+    }
+
+    /// The seed of its simulator, of a run's seed.
+    pub(super) fn seed(self, seed: u64) -> u64 {
+        match self {
             Self::Learning => seed,
             Self::Test => seed.wrapping_add(TEST_SEED_OFFSET),
-        };
-        SimulatedRobot::new(&plan.layout, &plan.settings, seed)
+        }
     }
 }
 

@@ -171,7 +171,7 @@ pub fn test_robot<R: Robot>(
     let mut glimpse = Glimpse::after(SNAPSHOT_STEP.min(run.test_steps));
     let tally = Tally::new(plan.behaviour.rules().len(), run.test_steps);
     let goals_steps = Vec::with_capacity(run.test_steps.min(MOST_GOALS) as usize);
-    let (mut probes, mut staged) = (Probes::new(plan), Staged::new(plan));
+    let (mut probes, mut staged) = (Probes::new(plan, cycle.robot()), Staged::new(plan));
     let chosen = vec![0; plan.settings.actions.len()];
     let mut counts = Counts { tally, chosen, attempt_steps: 0, goals_steps, stop };
     let mut observers =

@@ -18,6 +18,8 @@ pub struct Trail {
     pub last: Option<Pose>,
     /// Where they reached their goals.
     pub goals: Vec<[f32; 2]>,
+    /// Where everything that drives by itself was at the end.
+    pub movers: Vec<Pose>,
 }
 
 impl Trail {
@@ -40,7 +42,8 @@ impl Recorder {
     pub(super) fn new(steps: u64, robot: &impl Robot) -> Self {
         let mut leg = Vec::with_capacity(steps as usize + 1);
         leg.extend(place(robot));
-        Self { trail: Trail { legs: vec![leg], ..Trail::default() }, left: steps }
+        let movers = (0..).map_while(|index| robot.mover(index)).collect();
+        Self { trail: Trail { legs: vec![leg], movers, ..Trail::default() }, left: steps }
     }
 
     pub(super) fn finish(self) -> Trail {
@@ -62,6 +65,9 @@ impl<R: Robot> Observer<R> for Recorder {
                 Some(Ending::Failure) => self.trail.failures.push(place),
                 Some(Ending::Goal) => self.trail.goals.push(place),
                 _ => {}
+            }
+            for (index, mover) in self.trail.movers.iter_mut().enumerate() {
+                *mover = cycle.robot().mover(index).unwrap_or(*mover);
             }
         }
         self.left = self.left.saturating_sub(1);

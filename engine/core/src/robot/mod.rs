@@ -41,9 +41,19 @@ pub trait Robot {
         None
     }
 
-    /// Where the first thing that drives by itself is, if there is one and its place is known.
-    fn prey(&self) -> Option<Pose> {
+    /// The world's start at which it was put last, by its index there; nothing if it was put elsewhere.
+    fn start(&self) -> Option<usize> {
         None
+    }
+
+    /// Where the thing with this index among those that drive by themselves is, if there is one and its place is known.
+    fn mover(&self, _index: usize) -> Option<Pose> {
+        None
+    }
+
+    /// Where the first of them is.
+    fn prey(&self) -> Option<Pose> {
+        self.mover(0)
     }
 
     /// Least distance between the robot's body and that of the thing with this index among those that drive by themselves,

@@ -11,6 +11,14 @@ const DRAWS: usize = 50;
 /// Distance of the unshifted poses that are tried last, metres.
 const SPACING_M: f64 = 0.5;
 
+/// Where a robot is put.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Put {
+    pub(super) pose: Pose,
+    /// Index of the start that this is, if it is one.
+    pub(super) start: Option<usize>,
+}
+
 /// Draws safe poses.
 #[derive(Debug, Clone)]
 pub(super) struct Recovery {
@@ -30,38 +38,38 @@ impl Recovery {
     /// # Errors
     /// `E-RECOVERY-ROUTE` or `E-RECOVERY-MOVER` if the world has no lap route or no mover to recover to;
     /// `E-RECOVERY-BLOCKED` if every pose that may be used is blocked or has no ground under it.
-    pub(super) fn pose(&mut self, world: &World) -> Result<Pose> {
+    pub(super) fn pose(&mut self, world: &World) -> Result<Put> {
         for _ in 0..DRAWS {
-            let base = self.base(world)?;
-            let pose = self.shifted(base);
+            let Put { pose, start } = self.base(world)?;
+            let pose = self.shifted(pose);
             if world.is_safe(0, pose) {
-                return Ok(pose);
+                return Ok(Put { pose, start });
             }
         }
-        let safe = |pose: &Pose| world.is_safe(0, *pose);
+        let safe = |put: &Put| world.is_safe(0, put.pose);
         let found = if self.settings.to == RecoverTo::Behind {
-            self.farther_behind(world).find(safe)
+            self.farther_behind(world).map(anywhere).find(safe)
         } else {
-            let starts = world.layout().starts.iter().copied();
-            starts.chain(lap(world.layout()).into_iter().flat_map(along)).find(safe)
+            let starts = (0..world.layout().starts.len()).map(|start| at_start(world.layout(), start));
+            starts.chain(lap(world.layout()).into_iter().flat_map(along).map(anywhere)).find(safe)
         };
         found.ok_or_else(|| self.blocked(world))
     }
 
-    fn base(&mut self, world: &World) -> Result<Pose> {
+    fn base(&mut self, world: &World) -> Result<Put> {
         let layout = world.layout();
         match self.settings.to {
             RecoverTo::Nearest => {
                 let pose = world.body(0).pose;
                 let route = lap(layout).ok_or_else(|| self.no_route(layout))?;
-                Ok(route.pose_at(route.nearest(Point2::new(pose.x_m, pose.y_m)).0))
+                Ok(anywhere(route.pose_at(route.nearest(Point2::new(pose.x_m, pose.y_m)).0)))
             }
             RecoverTo::Random => {
                 let route = lap(layout).ok_or_else(|| self.no_route(layout))?;
-                Ok(route.pose_at(self.random.between(0.0, route.length_m())))
+                Ok(anywhere(route.pose_at(self.random.between(0.0, route.length_m()))))
             }
-            RecoverTo::Behind => self.farther_behind(world).next().ok_or_else(|| no_mover(layout)),
-            RecoverTo::Start => Ok(layout.starts[self.random.below(layout.starts.len() as u32) as usize]),
+            RecoverTo::Behind => self.farther_behind(world).next().map(anywhere).ok_or_else(|| no_mover(layout)),
+            RecoverTo::Start => Ok(at_start(layout, self.random.below(layout.starts.len() as u32) as usize)),
         }
     }
 
@@ -69,10 +77,17 @@ impl Recovery {
     /// beginning; the wanted place itself is there in any case.
     fn farther_behind<'a>(&self, world: &'a World) -> impl Iterator<Item = Pose> + use<'a> {
         let distance_m = self.settings.distance_m;
-        world.prey_route().into_iter().flat_map(move |(route, along_m)| {
-            let room_m = if route.closed { route.length_m() } else { along_m };
+        world.prey_route().into_iter().flat_map(move |(route, along_m, back)| {
+            let room_m = match back {
+                _ if route.closed => route.length_m(),
+                true => route.length_m() - along_m,
+                false => along_m,
+            };
             let count = ((room_m - distance_m).max(0.0) / SPACING_M) as usize;
-            (0..=count).map(move |index| route.pose_at(along_m - distance_m - index as f64 * SPACING_M))
+            (0..=count).map(move |index| match index as f64 * SPACING_M {
+                farther_m if back => turned(route.pose_at(along_m + distance_m + farther_m)),
+                farther_m => route.pose_at(along_m - distance_m - farther_m),
+            })
         })
     }
 
@@ -109,6 +124,19 @@ impl Recovery {
         let message = format!("the robot cannot recover: every {places} of world '{name}' is blocked");
         Box::new(Diagnostic::new("E-RECOVERY-BLOCKED", message).help(help))
     }
+}
+
+fn anywhere(pose: Pose) -> Put {
+    Put { pose, start: None }
+}
+
+fn at_start(layout: &Layout, start: usize) -> Put {
+    Put { pose: layout.starts[start].pose, start: Some(start) }
+}
+
+/// The same place, looking the other way.
+fn turned(pose: Pose) -> Pose {
+    Pose::new(pose.x_m, pose.y_m, pose.yaw_rad + std::f64::consts::PI)
 }
 
 fn lap(layout: &Layout) -> Option<&Route> {
@@ -163,12 +191,12 @@ mod tests {
     #[test]
     fn behind_a_mover_is_a_place_on_its_route_that_looks_along_it() {
         let mut world = world(&format!("{CORNER}{MOVER}"));
-        assert!(is_near(exact(RecoverTo::Behind).pose(&world).unwrap(), 0.9, 0.0, 0.0));
+        assert!(is_near(exact(RecoverTo::Behind).pose(&world).unwrap().pose, 0.9, 0.0, 0.0));
         for _ in 0..7 {
             world.advance(&[]);
         }
         // 2 + 3.5 m along: 1.5 m past the corner; 1.1 m less is on the second side too.
-        assert!(is_near(exact(RecoverTo::Behind).pose(&world).unwrap(), 4.0, 0.4, FRAC_PI_2));
+        assert!(is_near(exact(RecoverTo::Behind).pose(&world).unwrap().pose, 4.0, 0.4, FRAC_PI_2));
     }
 
     #[test]
@@ -177,7 +205,7 @@ mod tests {
         for _ in 0..100 {
             world.advance(&[]);
         }
-        assert!(is_near(exact(RecoverTo::Behind).pose(&world).unwrap(), 4.0, 2.9, FRAC_PI_2));
+        assert!(is_near(exact(RecoverTo::Behind).pose(&world).unwrap().pose, 4.0, 2.9, FRAC_PI_2));
     }
 
     #[test]
@@ -185,9 +213,9 @@ mod tests {
         let wall = "[[wall]]\npoints_m = [[1, -1], [1, 1]]\n";
         let world = world(&format!("{CORNER}{}{wall}", MOVER.replace("= 2", "= 3")));
         // 1.9 m along is free; 0.25 m of half length ahead of the wall it would be at 1.3 m at least.
-        assert!(is_near(exact(RecoverTo::Behind).pose(&world).unwrap(), 1.9, 0.0, 0.0));
+        assert!(is_near(exact(RecoverTo::Behind).pose(&world).unwrap().pose, 1.9, 0.0, 0.0));
         let world = self::world(&format!("{CORNER}{MOVER}{}", wall.replace("[1, ", "[0.9, ")));
-        assert!(is_near(exact(RecoverTo::Behind).pose(&world).unwrap(), 0.4, 0.0, 0.0));
+        assert!(is_near(exact(RecoverTo::Behind).pose(&world).unwrap().pose, 0.4, 0.0, 0.0));
     }
 
     #[test]
@@ -200,6 +228,6 @@ mod tests {
             let help = error.help.unwrap();
             assert!(help.contains("name = \"lap\"") && help.contains("recovery(\"start\")"), "{help}");
         }
-        assert!(is_near(exact(RecoverTo::Start).pose(&bare).unwrap(), 0.0, 3.0, 0.0));
+        assert!(is_near(exact(RecoverTo::Start).pose(&bare).unwrap().pose, 0.0, 3.0, 0.0));
     }
 }

@@ -23,6 +23,8 @@ pub struct SimulatedRobot {
     moved: bool,
     /// Where the camera sees the robot's own body: what it sees that moves, and room for it.
     own: Option<Vec<Solid>>,
+    /// The start at which it was put last, if it was one.
+    start: Option<usize>,
 }
 
 impl SimulatedRobot {
@@ -37,14 +39,15 @@ impl SimulatedRobot {
         let laser = Laser::new(&layout.scene, &settings.laser, seed);
         let ground = GroundSensors::new(&layout.scene, &settings.ground);
         let mut recovery = Recovery::new(&settings.recovery, seed);
-        let start = recovery.pose(&world)?;
-        world.place(0, start);
+        let put = recovery.pose(&world)?;
+        world.place(0, put.pose);
         // Noise would hide a blank image from the test.
         let mut quiet = Camera::new(&layout.scene, &CameraSettings { noise: 0.0, ..settings.camera.clone() }, seed);
         let mut own = settings.camera.own_body.then(|| Vec::with_capacity(world.seen_by(0).len() + 1));
         self_test(&mut quiet, &world.body(0).world_from_robot(), in_view(&world, &mut own))?;
         let (watch, motion) = (CameraWatch::new(), Motion::default());
-        Ok(Self { world, camera, laser, ground, watch, recovery, motion, moved: false, own })
+        let start = put.start;
+        Ok(Self { world, camera, laser, ground, watch, recovery, motion, moved: false, own, start })
     }
 
     /// The truth, for tests and reports only.
@@ -87,8 +90,10 @@ impl Robot for SimulatedRobot {
     }
 
     fn recover(&mut self) -> Result<()> {
-        let pose = self.recovery.pose(&self.world)?;
-        self.world.place(0, pose);
+        self.world.begin_attempt();
+        let put = self.recovery.pose(&self.world)?;
+        self.world.place(0, put.pose);
+        self.start = put.start;
         self.motion = Motion::default();
         self.moved = true;
         Ok(())
@@ -99,8 +104,12 @@ impl Robot for SimulatedRobot {
         Some(Whereabouts { pose: body.pose, z_m: body.z_m })
     }
 
-    fn prey(&self) -> Option<Pose> {
-        self.world.prey()
+    fn start(&self) -> Option<usize> {
+        self.start
+    }
+
+    fn mover(&self, index: usize) -> Option<Pose> {
+        self.world.mover(index)
     }
 
     fn gap_m(&self, mover: usize) -> Option<f64> {

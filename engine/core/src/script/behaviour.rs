@@ -4,7 +4,7 @@ use super::guards;
 use super::outline::ScriptOutline;
 use super::params::{Param, ParamValues};
 use super::setup::SettingPlaces;
-use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, nearest_name, printable};
+use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText};
 use crate::geometry::Twist;
 use crate::judge::compiled::CompiledScript;
 use crate::judge::memory::Remembered;
@@ -12,20 +12,9 @@ use crate::judge::rule::CompiledRule;
 use crate::judge::{Judge, RuleText, reach};
 use crate::outcome::Then;
 use crate::settings::{LaserSettings, RunSettings, ScanFan, Settings};
-use crate::verdict::{Endable, Probe, Success, SuccessCondition};
+use crate::verdict::{Endable, Success, SuccessCondition};
 use std::ops::Range;
 use std::sync::Arc;
-
-/// What a world has that figures are measured by.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Measurable<'a> {
-    /// A route named `lap`.
-    pub has_route: bool,
-    /// The names of its movers.
-    pub movers: &'a [&'a str],
-    /// A floor that is small enough to be counted in squares.
-    pub has_squares: bool,
-}
 
 /// A script, loaded and checked; shared by all seeds.
 #[derive(Debug)]
@@ -110,45 +99,17 @@ impl Behaviour {
         Success::new(&self.success, self.endable, has_route, run)
     }
 
+    /// Its own conditions of success.
+    pub(super) fn conditions(&self) -> &[SuccessCondition] {
+        &self.success
+    }
+
     /// The names of its measures, in their order.
     pub fn measures(&self) -> impl Iterator<Item = &str> {
         self.compiled.remembered.iter().filter_map(|remembered| match remembered {
             Remembered::Measure(measure) => Some(measure.name.as_str()),
             _ => None,
         })
-    }
-
-    /// Adds every condition of success that reads a figure which the world cannot give.
-    pub(crate) fn find_unmeasurable(&self, world: &Measurable<'_>, mistakes: &mut Mistakes) {
-        let movers = world.movers;
-        for condition in &self.success {
-            let missing = condition.term.figures().into_iter().find_map(|asked| {
-                let of = asked.of.request().and_then(|request| request.mover.as_deref());
-                if asked.figure.needs_route() && !world.has_route {
-                    let message =
-                        format!("this world has no route \"lap\": '{}' cannot be measured", asked.figure.name);
-                    let help = "add a [[route]] named \"lap\" to the world file, or ask for another figure";
-                    return Some((message, help.to_owned()));
-                }
-                if asked.figure.probe() == Some(Probe::FloorCovered) && !world.has_squares {
-                    let message =
-                        "this world is too large: its floor cannot be counted in squares of 0.25 m".to_owned();
-                    return Some((message, "ask for another figure, such as test.distance_m".to_owned()));
-                }
-                let mover = of.filter(|mover| !movers.contains(mover))?;
-                let message = format!("this world has no mover \"{}\"", printable(mover));
-                let help = match (nearest_name(mover, movers.iter().copied()), movers) {
-                    (Some(near), _) => format!("did you mean \"{}\"?", printable(near)),
-                    (None, []) => "add a [[mover]] to the world file, or ask for another figure".to_owned(),
-                    (None, movers) => format!("there are: {}", printable(&movers.join(", "))),
-                };
-                Some((message, help))
-            });
-            if let (Some((message, help)), Some(span)) = (missing, &condition.span) {
-                let wrong = Diagnostic::new("E-SCRIPT-SUCCESS", message);
-                mistakes.add(wrong.at(self.source(), span.clone(), "not in this world").help(help));
-            }
-        }
     }
 
     /// Adds every rule that can never fire with this laser, on a floor at most `drop_m` metres below the robot's own

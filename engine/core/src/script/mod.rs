@@ -14,6 +14,7 @@ mod draft;
 mod fact_names;
 mod guards;
 mod is_key;
+mod measurable;
 mod measures;
 mod memory;
 mod named_body;
@@ -48,8 +49,8 @@ mod view_names;
 mod words;
 
 pub use behaviour::Behaviour;
-pub(crate) use behaviour::Measurable;
 pub(crate) use draft::Draft;
+pub(crate) use measurable::Measurable;
 pub use named_body::BodyFiles;
 pub use outline::{BeamLoop, Compared, Condition, Gathers, NamedFact, RuleOutline, ScriptOutline, UnusedName};
 pub(crate) use params::no_param;

@@ -229,7 +229,7 @@ impl SuccessCompiler<'_> {
         let form = format!("write {}.{}", subject.word(), figure.takes().form(name));
         let (message, of) = match (figure.takes(), arguments) {
             (Takes::Nothing, None) => {
-                let request = figure.probe().map(|probe| Request { figure: name, probe, mover: None, metres: 0.0 });
+                let request = figure.probe().map(|probe| Request { figure: name, probe, of: None, metres: 0.0 });
                 (
                     String::new(),
                     request.map_or(Some(FigureOf::Whole), |request| Some(FigureOf::Request(request.into()))),
@@ -249,12 +249,13 @@ impl SuccessCompiler<'_> {
                 (String::new(), Some(FigureOf::Measure(of)))
             }
             (Takes::Measure, _) => (format!("'{name}' needs the name of a measure"), None),
-            (Takes::Mover, Some([Expr::StringConstant(mover, _)])) => {
-                (String::new(), Self::of_mover(figure, mover.as_str(), 0.0))
+            (Takes::Mover | Takes::Place, Some([Expr::StringConstant(of, _)])) => {
+                (String::new(), Self::of_named(figure, of.as_str(), 0.0))
             }
+            (Takes::Place, _) => (format!("'{name}' needs the name of a place of the world"), None),
             (Takes::Mover, _) => (format!("'{name}' needs the name of a mover of the world"), None),
             (Takes::MoverAndMetres, Some([Expr::StringConstant(mover, _), metres])) => match self.number(metres)? {
-                Term::Constant(metres) => (String::new(), Self::of_mover(figure, mover.as_str(), metres)),
+                Term::Constant(metres) => (String::new(), Self::of_named(figure, mover.as_str(), metres)),
                 _ => (format!("the distance that '{name}' is measured from must be a plain number"), None),
             },
             (Takes::MoverAndMetres, _) => {
@@ -270,8 +271,8 @@ impl SuccessCompiler<'_> {
         }
     }
 
-    fn of_mover(figure: &TestFigure, mover: &str, metres: f64) -> Option<FigureOf> {
-        let request = Request { figure: figure.name, probe: figure.probe()?, mover: Some(mover.to_owned()), metres };
+    fn of_named(figure: &TestFigure, of: &str, metres: f64) -> Option<FigureOf> {
+        let request = Request { figure: figure.name, probe: figure.probe()?, of: Some(of.to_owned()), metres };
         Some(FigureOf::Request(request.into()))
     }
 

@@ -11,8 +11,8 @@ pub struct Request {
     pub figure: &'static str,
     /// What to measure.
     pub probe: Probe,
-    /// The name of a mover, where the figure is of one.
-    pub mover: Option<String>,
+    /// The name of a mover or of a place, where the figure is of one.
+    pub of: Option<String>,
     /// The distance that is asked for, metres, where the figure takes one; else 0.
     pub metres: f64,
 }
@@ -28,6 +28,12 @@ pub enum Probe {
     ContactsWith,
     /// Share of the floor that the body covered.
     FloorCovered,
+    /// Entries into a place, for 1,000 steps.
+    Visits,
+    /// Gates passed in order and direction, for 1,000 steps.
+    Gates,
+    /// Share of the passed gates that were passed out of order or backwards.
+    GateErrors,
 }
 
 /// A figure that was asked for, and what it came to.
@@ -41,9 +47,9 @@ pub struct AskedFigure {
 
 impl fmt::Display for Request {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match (&self.mover, self.probe) {
-            (Some(mover), Probe::GapError) => write!(f, "{}(\"{mover}\", {})", self.figure, self.metres),
-            (Some(mover), _) => write!(f, "{}(\"{mover}\")", self.figure),
+        match (&self.of, self.probe) {
+            (Some(of), Probe::GapError) => write!(f, "{}(\"{of}\", {})", self.figure, self.metres),
+            (Some(of), _) => write!(f, "{}(\"{of}\")", self.figure),
             (None, _) => f.write_str(self.figure),
         }
     }

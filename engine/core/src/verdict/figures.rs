@@ -167,6 +167,8 @@ pub(crate) enum Takes {
     Mover,
     /// The name of a mover, and a distance in metres.
     MoverAndMetres,
+    /// The name of a place of the world.
+    Place,
 }
 
 impl Takes {
@@ -178,6 +180,7 @@ impl Takes {
             Self::Stage => format!("{figure}(\"stage\")"),
             Self::Measure => format!("{figure}(\"measure\")"),
             Self::Mover => format!("{figure}(\"mover\")"),
+            Self::Place => format!("{figure}(\"place\")"),
             Self::MoverAndMetres => format!("{figure}(\"mover\", 0.8)"),
         }
     }
@@ -208,7 +211,9 @@ impl TestFigure {
     #[must_use]
     pub(crate) fn takes(&self) -> Takes {
         match self.source {
-            Source::Test(_) | Source::Route(_) | Source::Goal(_) | Source::Asked(Probe::FloorCovered) => Takes::Nothing,
+            Source::Test(_) | Source::Route(_) | Source::Goal(_) => Takes::Nothing,
+            Source::Asked(Probe::FloorCovered | Probe::Gates | Probe::GateErrors) => Takes::Nothing,
+            Source::Asked(Probe::Visits) => Takes::Place,
             Source::Rule(_) => Takes::Rule,
             Source::Stage(_) => Takes::Stage,
             Source::Measure(_) => Takes::Measure,
@@ -371,6 +376,19 @@ pub const FIGURES: &[TestFigure] = &[
         "Mean over all steps of how far that gap is from the one that is named.",
     ),
     asked("contacts_with", "steps", Probe::ContactsWith, "Steps in which the body touched that mover."),
+    asked(
+        "visits_per_1000",
+        "",
+        Probe::Visits,
+        "How often the robot's centre came into the circle of a place in 1,000 steps: test.visits_per_1000(\"red\").",
+    ),
+    asked("gates_per_1000", "", Probe::Gates, "Gates passed in order and direction in 1,000 steps."),
+    asked(
+        "gate_errors",
+        "share",
+        Probe::GateErrors,
+        "Gates passed out of order or backwards, of all that were passed; 0 if none was.",
+    ),
     asked(
         "floor_covered",
         "share",

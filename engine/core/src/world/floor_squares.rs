@@ -61,7 +61,7 @@ impl FloorSquares {
     fn reach(&mut self, layout: &Layout, body: &BodyShape) {
         let mut seen = vec![false; self.squares.len()];
         let mut next: Vec<usize> =
-            layout.starts.iter().filter_map(|start| self.square_at(start.x_m, start.y_m)).collect();
+            layout.starts.iter().filter_map(|start| self.square_at(start.pose.x_m, start.pose.y_m)).collect();
         while let Some(index) = next.pop() {
             if std::mem::replace(&mut seen[index], true) {
                 continue;
@@ -146,7 +146,7 @@ fn bounds(layout: &Layout) -> [Point2; 2] {
         let (low, high) = solid.bounds();
         [Point2::new(low.x, low.y), Point2::new(high.x, high.y)]
     });
-    let starts = layout.starts.iter().map(|start| Point2::new(start.x_m, start.y_m));
+    let starts = layout.starts.iter().map(|start| Point2::new(start.pose.x_m, start.pose.y_m));
     let routes = layout.routes.iter().flat_map(|route| route.points().iter().copied());
     let none = [Point2::new(f64::MAX, f64::MAX), Point2::new(f64::MIN, f64::MIN)];
     let [low, high] = solids.chain(starts).chain(routes).fold(none, |[low, high], at| {

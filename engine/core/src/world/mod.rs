@@ -8,11 +8,14 @@ mod contact;
 mod drivetrain;
 mod floor_squares;
 mod layout;
+pub(crate) mod marks;
+mod movements;
 mod mover;
 mod obstacle;
 mod route;
 mod route_progress;
 pub mod scene;
+mod schedule;
 mod stance;
 mod terrain;
 #[cfg(test)]
@@ -23,11 +26,13 @@ mod vehicle;
 pub use body::{Body, Motion};
 pub(crate) use floor_squares::FloorSquares;
 pub use layout::Layout;
+pub use marks::{Circle, Gate, Start};
+pub use movements::Movements;
 pub use mover::Mover;
 pub use route::Route;
 pub(crate) use route_progress::RouteProgress;
 
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Point2, Pose, Twist};
 use crate::random::{Random, Stream};
 use crate::settings::RobotSettings;
 use drivetrain::Drivetrain;
@@ -56,7 +61,7 @@ pub struct World {
     material: usize,
     period_s: f64,
     periods: u64,
-    mover_speed: f64,
+    movements: Movements,
 }
 
 impl World {
@@ -66,7 +71,7 @@ impl World {
     /// The first body draws the same random numbers whether there are others or not.
     #[must_use]
     pub fn new(layout: Arc<Layout>, bodies: &[RobotSettings], period_s: f64, seed: u64) -> Self {
-        let start = layout.starts.first().copied().unwrap_or_default();
+        let start = layout.starts.first().map_or(Pose::default(), |start| start.pose);
         let vehicle = |(index, robot): (u32, &RobotSettings)| {
             let drive = Drivetrain::new(robot, period_s, Random::of_body(seed, Stream::Drive, index));
             Vehicle::new(robot.body, drive, &layout, start, bodies.len().saturating_sub(1))
@@ -75,11 +80,12 @@ impl World {
         let material = layout.scene.parts().materials.iter().position(|material| material.name == layout::PLAIN);
         let material = material.unwrap_or(layout.scene.parts().floor);
         let solids = vehicles.iter().map(|vehicle| vehicle.solid(material)).collect();
-        let traffic = Traffic::new(&layout.movers, &layout.routes, solids);
+        let movements = Movements::new(Arc::clone(&layout), seed, 1.0);
+        let traffic = Traffic::new(&layout.movers, &movements, solids);
         let motions = vec![Motion::default(); vehicles.len()];
-        let mut world = Self { layout, vehicles, motions, traffic, material, period_s, periods: 0, mover_speed: 1.0 };
+        let mut world = Self { layout, vehicles, motions, traffic, material, period_s, periods: 0, movements };
         for index in 1..world.vehicles.len() {
-            let safe = world.layout.starts.iter().copied().find(|start| world.is_safe(index, *start));
+            let safe = world.layout.starts.iter().map(|start| start.pose).find(|start| world.is_safe(index, *start));
             safe.into_iter().for_each(|start| world.place(index, start));
         }
         world
@@ -88,7 +94,15 @@ impl World {
     /// This world with every mover `speed` times as fast as its file says.
     #[must_use]
     pub fn with_mover_speed(self, speed: f64) -> Self {
-        Self { mover_speed: speed, ..self }
+        Self { movements: self.movements.scaled(speed), ..self }
+    }
+
+    /// An attempt begins: movers whose file says so draw their speed, or begin anew.
+    pub fn begin_attempt(&mut self) {
+        if self.movements.live() {
+            self.movements.begin();
+            self.traffic.arrange(&self.layout.movers, &self.movements);
+        }
     }
 
     /// Puts a body at rest at `pose`, on the highest platform or ramp there or else on the floor.
@@ -119,7 +133,9 @@ impl World {
         }
         self.periods += 1;
         if self.traffic.has_movers() {
-            self.traffic.arrange(&self.layout.movers, &self.layout.routes, self.mover_time_s());
+            let middle = |vehicle: &Vehicle| Point2::new(vehicle.stance().pose.x_m, vehicle.stance().pose.y_m);
+            self.movements.advance(self.periods as f64 * self.period_s, self.vehicles.iter().map(middle));
+            self.traffic.arrange(&self.layout.movers, &self.movements);
             for (motion, vehicle) in self.motions.iter_mut().zip(&self.vehicles) {
                 motion.contact |= self.traffic.touches(vehicle.shape(), vehicle.stance());
             }
@@ -173,10 +189,16 @@ impl World {
         self.vehicles[index].solid(self.material)
     }
 
+    /// Where a mover is now.
+    #[must_use]
+    pub fn mover(&self, index: usize) -> Option<Pose> {
+        (index < self.layout.movers.len()).then(|| self.movements.pose(index))
+    }
+
     /// Where the first mover is now.
     #[must_use]
     pub fn prey(&self) -> Option<Pose> {
-        self.layout.movers.first().map(|mover| mover.pose_at(&self.layout.routes, self.mover_time_s()))
+        self.mover(0)
     }
 
     /// Least distance between a body and the mover with this index, seen from above, metres: 0 where they touch. `None` if
@@ -189,17 +211,10 @@ impl World {
         self.traffic.gap_m(&self.vehicles[index].solid(self.material), &self.layout.movers, mover)
     }
 
-    /// The route of the first mover, and how far along it the mover is now, metres.
+    /// The route of the first mover, how far along it the mover is now, metres, and whether it comes back along it.
     #[must_use]
-    pub(crate) fn prey_route(&self) -> Option<(&Route, f64)> {
-        let mover = self.layout.movers.first()?;
-        let route = self.layout.routes.get(mover.route)?;
-        Some((route, mover.along_m(route, self.mover_time_s())))
-    }
-
-    /// The time by which movers go.
-    fn mover_time_s(&self) -> f64 {
-        self.time_s() * self.mover_speed
+    pub(crate) fn prey_route(&self) -> Option<(&Route, f64, bool)> {
+        self.movements.first_on_route()
     }
 
     /// Time since the world began, seconds. Placing a body does not turn it back.

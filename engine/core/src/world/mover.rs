@@ -2,9 +2,10 @@
 
 use super::route::Route;
 use super::scene::Solid;
+use super::schedule::Schedule;
 use crate::geometry::{Point3, Pose};
 
-/// A body of boxes that follows a route at constant speed; at the end of an open route it stops.
+/// A body of boxes that follows a route; at the end of an open one it stops.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mover {
     /// The name in the world file.
@@ -15,6 +16,8 @@ pub struct Mover {
     pub(super) speed_m_per_s: f64,
     /// Where on the route it is at time 0, metres from the route's beginning.
     pub(super) offset_m: f64,
+    /// What else it does; nothing if the time alone says where it is.
+    pub(super) schedule: Option<Schedule>,
     /// Its solids in its own axes: x forward, the origin on the floor at the place on the route.
     pub solids: Vec<Solid>,
 }
@@ -26,7 +29,7 @@ impl Mover {
         routes.get(self.route)
     }
 
-    /// Where it is at a time.
+    /// Where it is at a time, if it does nothing but follow its route at one speed; else see [`super::Movements`].
     #[must_use]
     pub fn pose_at(&self, routes: &[Route], time_s: f64) -> Pose {
         routes.get(self.route).map_or(Pose::default(), |route| route.pose_at(self.along_m(route, time_s)))

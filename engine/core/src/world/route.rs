@@ -81,6 +81,16 @@ impl Route {
         Pose::new(segment.from.x + rest * x, segment.from.y + rest * y, segment.yaw_rad)
     }
 
+    /// The same place as a distance within the route's length.
+    #[must_use]
+    pub(super) fn within(&self, along_m: f64) -> f64 {
+        if self.closed {
+            along_m - self.length_m * (along_m / self.length_m).floor()
+        } else {
+            along_m.min(self.length_m)
+        }
+    }
+
     /// The nearest place of the route: its distance along the route and its distance from `point`, both metres.
     #[must_use]
     pub(crate) fn nearest(&self, point: Point2) -> (f64, f64) {

@@ -1,6 +1,7 @@
 //! How a body drives, touches, climbs and falls.
 
 mod bodies;
+mod movers;
 
 use super::*;
 use crate::diagnostic::SourceText;
@@ -256,7 +257,7 @@ fn whatever_is_commanded_the_body_never_ends_inside_a_solid_or_in_the_air() {
         for _ in 0..3_000 {
             let motion = drive(&mut world, random.between(-0.2, 1.0), random.between(-1.0, 1.0), 1);
             (contacts, falls) = (contacts + usize::from(motion.contact), falls + usize::from(motion.fallen));
-            let start = world.layout().starts[random.below(4) as usize];
+            let start = world.layout().starts[random.below(4) as usize].pose;
             if motion.fallen {
                 world.place(0, start);
             }

@@ -1,8 +1,8 @@
 //! Whatever moves in a world, as bodies touch it and as sensors see it: movers, and other bodies.
 
+use super::movements::Movements;
 use super::mover::Mover;
 use super::obstacle::Obstacle;
-use super::route::Route;
 use super::scene::Solid;
 use super::stance::Stance;
 use crate::geometry::Pose;
@@ -20,7 +20,7 @@ pub(super) struct Traffic {
 
 impl Traffic {
     /// All movers at time 0, and the bodies where they are.
-    pub(super) fn new(movers: &[Mover], routes: &[Route], bodies: Vec<Solid>) -> Self {
+    pub(super) fn new(movers: &[Mover], movements: &Movements, bodies: Vec<Solid>) -> Self {
         let bodies = if bodies.len() > 1 { bodies } else { Vec::new() };
         let moving = || movers.iter().flat_map(|mover| mover.solids.iter().cloned());
         let mut traffic = Self {
@@ -28,16 +28,16 @@ impl Traffic {
             solids: bodies.iter().cloned().chain(moving()).chain(bodies.iter().cloned()).collect(),
             bodies: bodies.iter().map(Obstacle::new).collect(),
         };
-        traffic.arrange(movers, routes, 0.0);
+        traffic.arrange(movers, movements);
         traffic
     }
 
-    /// Puts the movers where they are at a time; they must be those that it was made with.
-    pub(super) fn arrange(&mut self, movers: &[Mover], routes: &[Route], time_s: f64) {
+    /// Puts the movers where they are; they must be those that it was made with.
+    pub(super) fn arrange(&mut self, movers: &[Mover], movements: &Movements) {
         let (first, count) = (self.bodies.len(), self.movers.len());
         let mut places = &mut self.solids[first..first + count];
-        for mover in movers {
-            places = mover.arrange(mover.pose_at(routes, time_s), places);
+        for (mover, pose) in movers.iter().zip(movements.poses()) {
+            places = mover.arrange(pose, places);
         }
         for (solid, obstacle) in self.solids[first..].iter().zip(&mut self.movers) {
             *obstacle = Obstacle::new(solid);

@@ -20,6 +20,12 @@ pub struct Ground {
     pub solids: Vec<SolidOutline>,
     /// The lap that the world's author had in mind, metres.
     pub route_m: Option<Vec<[f64; 2]>>,
+    /// Places to visit: x, y and radius, metres.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub places_m: Vec<[f64; 3]>,
+    /// Gates to pass: the right post and the left one, metres.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub gates_m: Vec<[[f64; 2]; 2]>,
     /// Its movers, in the order of the world file.
     pub movers: Vec<MoverOutline>,
 }
@@ -64,7 +70,7 @@ impl Ground {
             solids: mover.solids.iter().map(|solid| SolidOutline::new(solid, parts, false)).collect(),
             way_m: world.way(mover).map(points),
         };
-        let starts = layout.starts.iter().map(|start| [start.x_m, start.y_m]);
+        let starts = layout.starts.iter().map(|start| [start.pose.x_m, start.pose.y_m]);
         let ways = world.ways().chain(world.lap).flat_map(points);
         Self {
             name: layout.name.clone(),
@@ -72,6 +78,16 @@ impl Ground {
             floor: colour(parts, parts.floor),
             solids: solids.iter().map(|(solid, driven_on)| SolidOutline::new(solid, parts, *driven_on)).collect(),
             route_m: world.lap.map(points),
+            places_m: layout
+                .places
+                .iter()
+                .map(|place| [place.centre.x, place.centre.y, place.radius_m].map(milli))
+                .collect(),
+            gates_m: layout
+                .gates
+                .iter()
+                .map(|gate| [gate.right, gate.left].map(|post| [milli(post.x), milli(post.y)]))
+                .collect(),
             movers: layout.movers.iter().map(mover).collect(),
         }
     }

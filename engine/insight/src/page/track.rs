@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::shot::{Shot, ShotMaker};
 use crate::markup::base64;
 use engine::diagnostic::Result;
-use engine::experiment::{Ledger, Phase, Plan, Playback, StepReasons};
+use engine::experiment::{Ledger, Phase, Plan, Playback, RecordedMovers, StepReasons};
 use engine::geometry::Pose;
 
 /// The most steps of a track; of more, the first and the last half of as many are kept.
@@ -113,9 +113,12 @@ impl TrackSource<'_> {
         let spans = spans(self.ledger.len());
         let mut columns = Columns::default();
         let names = self.names_of_legs();
+        let mut movers = RecordedMovers::new(self.plan, self.seed, self.phase);
         for step in spans.iter().flat_map(|[from, to]| *from..*to) {
             let places = names.iter().rev().find(|(from, _)| *from <= step).map(|(_, places)| places.as_slice());
             columns.add(self, step, places.unwrap_or_default());
+            movers.seek(self.ledger, step);
+            columns.add_movers(movers.poses(), self.unit_m);
         }
         let shots = self.play(moments, &spans, &mut columns)?;
         Ok((columns.finish(self.ledger.steps(), spans), shots))
@@ -131,13 +134,6 @@ impl TrackSource<'_> {
         }
         let swaps = self.plan.swaps().map(|(from, _, plan, _)| (from as usize, places(plan)));
         std::iter::once((0, places(self.plan.first_leg()))).chain(swaps).collect()
-    }
-
-    /// Where every mover was at the end of a step: movers follow the world's clock alone, which starts with the phase.
-    fn movers_after(&self, step: usize) -> impl Iterator<Item = Pose> {
-        let (layout, settings) = (&self.plan.layout, &self.plan.settings);
-        let time_s = (step + 1) as f64 * settings.run.period_s * settings.movers.speed;
-        layout.movers.iter().map(move |mover| mover.pose_at(&layout.routes, time_s))
     }
 
     /// Plays the steps again for what is not recorded: scans and pictures.
@@ -189,10 +185,15 @@ impl Columns {
         self.nearest_beam.extend(record.nearest_beam.to_le_bytes());
         let nearest_mm = (record.nearest_m * 1000.0).round().clamp(0.0, 65_535.0) as u16;
         self.nearest.extend(nearest_mm.to_le_bytes());
-        self.movers.resize_with(source.plan.layout.movers.len(), Default::default);
-        for (columns, pose) in self.movers.iter_mut().zip(source.movers_after(step)) {
-            let values = [place(pose.x_m), place(pose.y_m), short(1000.0 * pose.yaw_rad)];
-            columns.iter_mut().zip(values).for_each(|(column, value)| column.extend(value));
+    }
+
+    fn add_movers(&mut self, poses: impl Iterator<Item = Pose>, unit_m: f64) {
+        for (number, pose) in poses.enumerate() {
+            if self.movers.len() == number {
+                self.movers.push(Default::default());
+            }
+            let values = [short(pose.x_m / unit_m), short(pose.y_m / unit_m), short(1000.0 * pose.yaw_rad)];
+            self.movers[number].iter_mut().zip(values).for_each(|(column, value)| column.extend(value));
         }
     }
 

@@ -44,7 +44,7 @@ pub fn paths(data: &PathsData<'_>) -> Result<Picture> {
         route::draw_thin(&mut sheet, &plot, path, THIN.thin(0.55));
     }
     if let Some(path) = data.paths.get(strong) {
-        data.world.draw_movers(&mut sheet, &plot, path.steps());
+        data.world.draw_movers(&mut sheet, &plot, &path.movers);
         route::draw_path(&mut sheet, &plot, path);
     }
     explain(&mut sheet, seed);

@@ -6,7 +6,7 @@ use super::sheet::{FRAME, PAPER, Sheet, TEXT};
 use engine::experiment::Plan;
 use engine::geometry::{Point2, Pose};
 use engine::world::scene::{SceneParts, Shape, Solid};
-use engine::world::{Mover, Route};
+use engine::world::{Circle, Gate, Mover, Route};
 
 /// The outline of what stands.
 pub(super) const EDGE: Tint = Tint::hex(0x484f58);
@@ -28,10 +28,12 @@ pub struct WorldPlan<'a> {
     pub routes: &'a [Route],
     /// What drives by itself.
     pub movers: &'a [Mover],
-    /// What a step is on the clock of the movers, seconds.
-    pub step_s: f64,
     /// The outline of the robot, in its own axes, metres; empty if there is none to draw.
     pub robot_m: Vec<[f64; 2]>,
+    /// Places to visit.
+    pub places: &'a [Circle],
+    /// Gates to pass.
+    pub gates: &'a [Gate],
 }
 
 impl<'a> WorldPlan<'a> {
@@ -44,8 +46,9 @@ impl<'a> WorldPlan<'a> {
             lap: layout.lap.map(|lap| &layout.routes[lap]),
             routes: &layout.routes,
             movers: &layout.movers,
-            step_s: plan.settings.run.period_s * plan.settings.movers.speed,
             robot_m: plan.settings.robot.body.footprint.outline_m(),
+            places: &layout.places,
+            gates: &layout.gates,
             ..Self::standing(layout.scene.parts())
         }
     }
@@ -59,8 +62,9 @@ impl<'a> WorldPlan<'a> {
             lap: None,
             routes: &[],
             movers: &[],
-            step_s: 0.0,
             robot_m: Vec::new(),
+            places: &[],
+            gates: &[],
         }
     }
 
@@ -109,6 +113,7 @@ impl<'a> WorldPlan<'a> {
                 sheet.line(closed(outline), 1.0, if driven_on { FRAME } else { EDGE });
             }
         }
+        self.draw_marks(sheet, plot);
         for way in self.ways() {
             dashed(sheet, &spots(plot, way), 1.0, WAY, FINE);
         }
@@ -131,12 +136,26 @@ impl<'a> WorldPlan<'a> {
         sheet.line(vec![spot(0.0, 0.0), spot(front, 0.0)], 1.0, TEXT);
     }
 
-    /// Draws the movers where they are after so many steps.
-    pub(super) fn draw_movers(&self, sheet: &mut Sheet, plot: &Plot, steps: usize) {
-        for mover in self.movers {
-            let at = mover.pose_at(self.routes, steps as f64 * self.step_s);
+    /// Draws the places as circles and the gates as lines from post to post, all of them fine.
+    fn draw_marks(&self, sheet: &mut Sheet, plot: &Plot) {
+        for place in self.places {
+            let round = |part: u8| {
+                let (sin, cos) = libm::sincos(f64::from(part) * std::f64::consts::TAU / 48.0);
+                plot.at(place.centre.x + place.radius_m * cos, place.centre.y + place.radius_m * sin)
+            };
+            dashed(sheet, &(0..=48).map(round).collect::<Vec<_>>(), 1.0, LAP, FINE);
+        }
+        for gate in self.gates {
+            let posts = [gate.right, gate.left].map(|post| plot.at(post.x, post.y));
+            dashed(sheet, &posts, 1.0, LAP, FINE);
+        }
+    }
+
+    /// Draws the movers where they are.
+    pub(super) fn draw_movers(&self, sheet: &mut Sheet, plot: &Plot, poses: &[Pose]) {
+        for (mover, at) in self.movers.iter().zip(poses) {
             for solid in &mover.solids {
-                let outline = outline(&placed(solid, at), plot);
+                let outline = outline(&placed(solid, *at), plot);
                 sheet.area(outline.clone(), self.colour(solid.material));
                 sheet.line(closed(outline), 1.0, TEXT);
             }

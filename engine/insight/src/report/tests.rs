@@ -171,8 +171,13 @@ fn a_mover_stands_where_it_is_at_the_end_of_the_shown_time_and_its_way_is_drawn(
         boxes = [{ centre_m = [0, 0, 0.2], size_m = [0.4, 0.4, 0.4], material = \"green\" }]\n";
     let layout = Layout::parse(SourceText::new("guard.toml", text), &BodyShape::pioneer2at()).unwrap();
     let (routes, movers) = (layout.routes.as_slice(), layout.movers.as_slice());
-    let world = WorldPlan { routes, movers, step_s: 0.5, ..WorldPlan::standing(layout.scene.parts()) };
-    let trail = |steps: usize| Trail { legs: vec![vec![[0.0, 0.0]; steps + 1]], failures: vec![], ..Trail::default() };
+    let world = WorldPlan { routes, movers, ..WorldPlan::standing(layout.scene.parts()) };
+    let trail = |steps: usize| Trail {
+        legs: vec![vec![[0.0, 0.0]; steps + 1]],
+        failures: vec![],
+        movers: vec![movers[0].pose_at(routes, 0.5 * steps as f64)],
+        ..Trail::default()
+    };
     let panels: [(&str, &Trail); 2] = [("early", &trail(20)), ("late", &trail(80))];
     let svg = trajectories(&TrajectoryData { title: "guard", world: &world, panels: &panels }).unwrap().svg;
     let corners: Vec<f64> = (svg.lines().filter(|line| line.contains("fill=\"#01c803\"")))

@@ -45,7 +45,7 @@ pub fn trajectories(data: &TrajectoryData<'_>) -> Result<Picture> {
         sheet.text(fitted(heading, units(room_px)));
         let plot = floor.plot(&mut sheet, min, max, data.world.floor());
         data.world.draw(&mut sheet, &plot);
-        data.world.draw_movers(&mut sheet, &plot, path.steps());
+        data.world.draw_movers(&mut sheet, &plot, &path.movers);
         route::draw_path(&mut sheet, &plot, path);
         if let Some(last) = path.last {
             data.world.draw_robot(&mut sheet, &plot, last);

@@ -11,7 +11,7 @@ use super::dots::{Dot, Dots, Rank};
 use super::ink::TerminalInk;
 use super::lines::{heading, nothing};
 use super::view::View;
-use engine::experiment::Record;
+use engine::experiment::{Record, RecordedMovers};
 use insight::page::{Document, SolidOutline};
 use insight::words::typeset;
 
@@ -158,10 +158,10 @@ fn laser(view: &View, document: &Document, map: &Map, record: &Record, dots: &mu
 /// Everything that drives by itself, where it is at the end of the step.
 fn movers(view: &View, document: &Document, map: &Map, dots: &mut Dots) {
     let Some(shown) = &view.shown.run else { return };
-    let (settings, layout) = (&shown.run.plan.settings, &shown.run.plan.layout);
-    let time_s = (view.step + 1) as f64 * settings.run.period_s * settings.movers.speed;
-    for (mover, drawn) in layout.movers.iter().zip(&document.world.movers) {
-        let pose = mover.pose_at(&layout.routes, time_s);
+    let (Some(seed), Some(ledger)) = (view.seed_run(), view.ledger()) else { return };
+    let mut track = RecordedMovers::new(&shown.run.plan, seed.seed, view.phase);
+    track.seek(ledger, view.step);
+    for (pose, drawn) in track.poses().zip(&document.world.movers) {
         for solid in &drawn.solids {
             let corners = map.corners(solid, (pose.x_m, pose.y_m, pose.yaw_rad));
             dots.fill(&corners, 1, Rank::Line, TerminalInk::strong());

@@ -4,8 +4,7 @@ use super::Layout;
 use super::reader::{FileRow, read};
 use super::schema::MOST_SOLIDS;
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, nearest_name, printable};
-use crate::geometry::{Point2, Point3, Pose, Vector3};
-use crate::world::mover::Mover;
+use crate::geometry::{Point2, Point3, Vector3};
 use crate::world::route::{Route, rounded};
 use crate::world::scene::{Light, Material, Scene, SceneParts, Shape, Solid, Texture};
 use crate::world::terrain::Terrain;
@@ -42,12 +41,13 @@ pub(super) fn build(source: SourceText) -> Result<Built> {
     let light = builder.light(&file);
     let routes = builder.routes(&file);
     let movers = builder.movers(&file, &routes);
+    let gates = builder.gates(&file);
+    let (starts, places) = (builder.starts(&file, &gates), builder.places(&file));
     builder.has_start(&file);
     let Builder { materials, solids, carries, origins, .. } = builder;
     mistakes.end()?;
     let scene = Scene::new(SceneParts { solids, materials, floor, light });
     let terrain = Terrain::new(&scene, carries);
-    let starts = file.rows("start").iter().map(pose).collect();
     let lap = routes.iter().position(|route| route.name == "lap");
     let name = source.path.file_stem().map_or_else(|| "world".to_owned(), |stem| stem.to_string_lossy().into_owned());
     let layout = Layout {
@@ -55,6 +55,8 @@ pub(super) fn build(source: SourceText) -> Result<Built> {
         source: source.clone(),
         scene: Arc::new(scene),
         starts,
+        places,
+        gates,
         routes,
         lap,
         movers,
@@ -63,25 +65,20 @@ pub(super) fn build(source: SourceText) -> Result<Built> {
     Ok(Built { layout, file, origins })
 }
 
-fn pose(row: &FileRow) -> Pose {
-    let place = row.numbers("position_m");
-    Pose::new(place[0], place[1], yaw(row))
-}
-
-fn yaw(row: &FileRow) -> f64 {
+pub(super) fn yaw(row: &FileRow) -> f64 {
     row.number("yaw_deg").unwrap_or(0.0).to_radians()
 }
 
-fn error(code: &'static str, message: impl Into<String>) -> Diagnostic {
+pub(super) fn error(code: &'static str, message: impl Into<String>) -> Diagnostic {
     Diagnostic::new(code, message)
 }
 
 /// Where a solid was written.
 pub(super) type Origin = (&'static str, Range<usize>);
 
-struct Builder<'a> {
-    source: &'a SourceText,
-    mistakes: &'a mut Mistakes,
+pub(super) struct Builder<'a> {
+    pub(super) source: &'a SourceText,
+    pub(super) mistakes: &'a mut Mistakes,
     materials: Vec<Material>,
     solids: Vec<Solid>,
     carries: Vec<bool>,
@@ -89,7 +86,7 @@ struct Builder<'a> {
 }
 
 /// Whether a name may be one that a mistake in its own table, or in the name of a section, has kept from being read.
-fn is_lost(file: &FileRow, section: &str, name: &str) -> bool {
+pub(super) fn is_lost(file: &FileRow, section: &str, name: &str) -> bool {
     let may_be = |row: &FileRow| row.text("name").is_none_or(|known| known == name);
     file.misspelt || file.rows(section).iter().any(|row| !row.sound && may_be(row)) || file.lacks(section)
 }
@@ -122,15 +119,18 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn twice(&self, what: &str, row: &FileRow) -> Diagnostic {
-        let name = printable(row.text("name").unwrap_or_default());
-        error("E-WORLD-NAME", format!("there are two {what}s with the name '{name}'"))
+    pub(super) fn twice(&self, what: &str, row: &FileRow) -> Diagnostic {
+        self.twice_named(what, row, row.text("name").unwrap_or_default())
+    }
+
+    pub(super) fn twice_named(&self, what: &str, row: &FileRow, name: &str) -> Diagnostic {
+        error("E-WORLD-NAME", format!("there are two {what}s with the name '{}'", printable(name)))
             .at(self.source, row.span_of("name"), "used before")
             .help("give each its own name")
     }
 
     /// The material that a table names; 0 if there is none, which is then a mistake.
-    fn material(&mut self, file: &FileRow, row: &FileRow) -> usize {
+    pub(super) fn material(&mut self, file: &FileRow, row: &FileRow) -> usize {
         let name = row.text("material").unwrap_or(PLAIN);
         self.materials.iter().position(|material| material.name == name).unwrap_or_else(|| {
             if !is_lost(file, "material", name) && self.mistakes.wants(self.source, row.span_of("material").start) {
@@ -141,7 +141,7 @@ impl<'a> Builder<'a> {
         })
     }
 
-    fn no_such<'n>(
+    pub(super) fn no_such<'n>(
         &self,
         what: &str,
         name: &str,
@@ -322,40 +322,6 @@ impl<'a> Builder<'a> {
         let mut route = Route::new(name, points, closed);
         route.half_width_m = row.number("half_width_m").unwrap_or(route.half_width_m);
         Ok(route)
-    }
-
-    fn movers(&mut self, file: &FileRow, routes: &[Route]) -> Vec<Mover> {
-        let mut movers: Vec<Mover> = Vec::new();
-        for row in file.sound_rows("mover") {
-            let name = row.text("name").unwrap_or_default();
-            if movers.iter().any(|mover| mover.name == name) {
-                self.mistakes.add(self.twice("mover", row));
-            }
-            let wanted = row.text("route").unwrap_or_default();
-            let route = routes.iter().position(|route| route.name == wanted);
-            let names = routes.iter().map(|route| route.name.as_str());
-            // A route that is there and not in this list has a mistake of its own.
-            let written = file.rows("route").iter().any(|route| route.text("name") == Some(wanted));
-            if route.is_none() && !written && !is_lost(file, "route", wanted) {
-                self.mistakes.add(self.no_such("route", wanted, row, names));
-            }
-            let mut solids = Vec::new();
-            for part in row.rows("boxes") {
-                let (place, size) = (part.numbers("centre_m"), part.numbers("size_m"));
-                solids.push(Solid {
-                    shape: Shape::Box { half_m: 0.5 * Vector3::new(size[0], size[1], size[2]) },
-                    centre: Point3::new(place[0], place[1], place[2]),
-                    yaw_rad: yaw(part),
-                    material: self.material(file, part),
-                    collides: true,
-                });
-            }
-            let (speed_m_per_s, offset_m) =
-                (row.number("speed_m_per_s").unwrap_or(0.0), row.number("offset_m").unwrap_or(0.0));
-            let (name, route) = (name.to_owned(), route.unwrap_or(0));
-            movers.push(Mover { name, route, speed_m_per_s, offset_m, solids });
-        }
-        movers
     }
 
     fn has_start(&mut self, file: &FileRow) {

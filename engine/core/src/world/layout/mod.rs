@@ -1,12 +1,15 @@
 //! A world file, read and checked: the scene, the starts, the routes and the movers.
 
 mod build;
+mod marks;
+mod movers;
 mod reader;
 pub(crate) mod schema;
 mod starts;
 #[cfg(test)]
 mod tests;
 
+use super::marks::{Circle, Gate, Start};
 use super::mover::Mover;
 use super::route::Route;
 use super::scene::Scene;
@@ -33,7 +36,11 @@ pub struct Layout {
     /// What stands still.
     pub scene: Arc<Scene>,
     /// Where a robot can start; never empty.
-    pub starts: Vec<Pose>,
+    pub starts: Vec<Start>,
+    /// Every place to visit, in the order of the file.
+    pub places: Vec<Circle>,
+    /// Every gate, in the order in which they are to be passed.
+    pub gates: Vec<Gate>,
     /// Every route of the file, in its order.
     pub routes: Vec<Route>,
     /// Index of the route on which laps are measured: the one named `lap`.

@@ -1,5 +1,6 @@
 //! Reads a world file against its schema: syntax, names, types and ranges, each error at the user's own place.
 
+use super::movers::pushable;
 use super::schema::{FILE, FileKey, KeyForm, MOST_POINTS};
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, nearest_name, printable};
 use std::ops::Range;
@@ -40,6 +41,11 @@ impl FileRow {
     /// The place of a key's value; the table's if the key is not there.
     pub(super) fn span_of(&self, key: &str) -> Range<usize> {
         self.fields.iter().find(|(name, ..)| *name == key).map_or(self.span.clone(), |(_, span, _)| span.clone())
+    }
+
+    /// Whether a key is there.
+    pub(super) fn has(&self, key: &str) -> bool {
+        self.field(key).is_some()
     }
 
     pub(super) fn text(&self, key: &str) -> Option<&str> {
@@ -181,6 +187,7 @@ impl FileReader<'_> {
         });
         let near = nearest_name(written, keys.iter().map(|key| key.name));
         let help = match (same, near) {
+            _ if pushable(written).is_some() => pushable(written).unwrap_or_default().to_owned(),
             (Some(key), _) => format!("write '{}', in {}", key.name, key.unit),
             (None, Some(near)) => format!("did you mean '{near}'?"),
             _ => format!("it has: {}", keys.iter().map(|key| key.name).collect::<Vec<_>>().join(", ")),
@@ -262,6 +269,15 @@ impl FileReader<'_> {
                 Field::Text(word.to_owned())
             }
             KeyForm::Number(low, high) => Field::Numbers(vec![self.number(key, value, |n| (low..=high).contains(&n))?]),
+            KeyForm::Span(low, high) if value.get_ref().as_array().is_some() => {
+                let span = self.array(key, value, 2..=2, |n| (low..=high).contains(&n))?;
+                if span[0] > span[1] {
+                    let help = format!("write [{}, {}]", span[1], span[0]);
+                    return self.wrong(key, value, "the second is less than the first").help(help).fail();
+                }
+                Field::Numbers(span)
+            }
+            KeyForm::Span(low, high) => Field::Numbers(vec![self.number(key, value, |n| (low..=high).contains(&n))?]),
             KeyForm::Numbers(count, low, high) => {
                 Field::Numbers(self.array(key, value, count..=count, |n| (low..=high).contains(&n))?)
             }

@@ -9,6 +9,8 @@ pub(crate) enum KeyForm {
     Flag,
     /// A number from the first to the second, both included.
     Number(f64, f64),
+    /// A number in the range, or two in an array: from the first to the second.
+    Span(f64, f64),
     /// An array of so many numbers, each in the range.
     Numbers(usize, f64, f64),
     /// At least so many points `[x, y]`.
@@ -108,7 +110,12 @@ const PAINT: &[FileKey] = &[
     YAW,
     MATERIAL,
 ];
-const START: &[FileKey] = &[must("position_m", "metres", PLACE), YAW];
+const START: &[FileKey] =
+    &[may("name", "", KeyForm::Text), must("position_m", "metres", PLACE), YAW, may("gate", "", KeyForm::Text)];
+const CIRCLE: &[FileKey] =
+    &[must("name", "", KeyForm::Text), must("position_m", "metres", PLACE), must("radius_m", "metres", LENGTH)];
+const GATE: &[FileKey] =
+    &[may("name", "", KeyForm::Text), must("right_m", "metres", PLACE), must("left_m", "metres", PLACE)];
 const ROUTE: &[FileKey] = &[
     must("name", "", KeyForm::Text),
     must("points_m", "metres", KeyForm::Points(2)),
@@ -118,11 +125,24 @@ const ROUTE: &[FileKey] = &[
 ];
 const MOVER_BOX: &[FileKey] =
     &[must("centre_m", "metres", KeyForm::Numbers(3, -FAR, FAR)), must("size_m", "metres", SIZE), YAW, MATERIAL];
+const PACE: &[FileKey] = &[
+    must("from_m", "metres", KeyForm::Number(0.0, 100_000.0)),
+    must("m_per_s", "metres per second", KeyForm::Number(0.001, 10.0)),
+];
+const PAUSE: &[FileKey] = &[
+    must("at_m", "metres", KeyForm::Number(0.0, 100_000.0)),
+    must("for_s", "seconds", KeyForm::Number(0.001, 100_000.0)),
+];
 const MOVER: &[FileKey] = &[
     must("name", "", KeyForm::Text),
     must("route", "", KeyForm::Text),
-    must("speed_m_per_s", "metres per second", KeyForm::Number(0.0, 10.0)),
+    may("speed_m_per_s", "metres per second", KeyForm::Span(0.0, 10.0)),
     may("offset_m", "metres", KeyForm::Number(0.0, 100_000.0)),
+    may("speeds", "", KeyForm::Tables(PACE, 64)),
+    may("pauses", "", KeyForm::Tables(PAUSE, 64)),
+    may("returns", "", KeyForm::Flag),
+    may("starts_within_m", "metres", KeyForm::Number(THIN, FAR)),
+    may("at_recovery", "", KeyForm::Choice(&["stays", "begins"])),
     must("boxes", "", KeyForm::Tables(MOVER_BOX, 64)),
 ];
 
@@ -139,6 +159,8 @@ pub(crate) const FILE: &[FileKey] = &[
     may("ramp", "", KeyForm::Tables(BOX, MOST_SOLIDS)),
     may("paint", "", KeyForm::Tables(PAINT, MOST_SOLIDS)),
     may("start", "", KeyForm::Tables(START, 1000)),
+    may("place", "", KeyForm::Tables(CIRCLE, 64)),
+    may("gate", "", KeyForm::Tables(GATE, 64)),
     may("route", "", KeyForm::Tables(ROUTE, 64)),
     may("mover", "", KeyForm::Tables(MOVER, 64)),
 ];
@@ -151,6 +173,7 @@ impl FileKey {
             KeyForm::Text => "text in quotes".to_owned(),
             KeyForm::Flag => "true or false".to_owned(),
             KeyForm::Number(low, high) => format!("a number from {low} to {high}{unit}"),
+            KeyForm::Span(low, high) => format!("a number from {low} to {high}{unit}, or [least, greatest]"),
             KeyForm::Numbers(count, low, high) => format!("{count} numbers in [ ], each from {low} to {high}{unit}"),
             KeyForm::Points(least) => format!("at least {least} points [x, y], each number from -{FAR} to {FAR}{unit}"),
             KeyForm::Choice(words) => words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", "),

@@ -14,8 +14,8 @@ use crate::world::obstacle::Obstacle;
 /// `E-WORLD-START` for each that is not.
 pub(super) fn check_starts(world: &Built, body: &BodyShape) -> Result<()> {
     let mut mistakes = Mistakes::new(&world.layout.source);
-    for (row, &start) in world.file.rows("start").iter().zip(&world.layout.starts) {
-        mistakes.take(check_start(world, body, row, start));
+    for (row, start) in world.file.rows("start").iter().zip(&world.layout.starts) {
+        mistakes.take(check_start(world, body, row, start.pose));
     }
     mistakes.end()
 }

@@ -1,5 +1,8 @@
 //! Every mistake in a world file is told at its place, with what to write instead.
 
+mod marks;
+mod movers;
+
 use super::schema::{FILE, FileKey, KeyForm};
 use super::*;
 use crate::diagnostic::Kind;
@@ -55,7 +58,7 @@ fn every_shipped_world_loads_and_can_be_driven_along_its_lap_if_it_has_one() {
             assert_eq!(layout.obstruction(&PIONEER, pose), None, "{} at {pose:?}", layout.name);
         }
         for start in &layout.starts {
-            let distance = lap.nearest(crate::geometry::Point2::new(start.x_m, start.y_m)).1;
+            let distance = lap.nearest(crate::geometry::Point2::new(start.pose.x_m, start.pose.y_m)).1;
             assert!(distance < 1e-9, "{}: {start:?}", layout.name);
         }
     }

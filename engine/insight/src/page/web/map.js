@@ -31,6 +31,8 @@ class WorldMap {
     for (const solid of doc.world.solids) this.solid(pen, solid);
     const places = (way) => way.map(([x, y]) => [this.view.x(x), this.view.y(y)]);
     for (const { way_m: way } of doc.world.movers) if (way) line(pen, places(way), ink.quiet, 1, [2, 3]);
+    for (const gate of doc.world.gates_m ?? []) line(pen, places(gate), ink.quiet, 1, [2, 3]);
+    for (const circle of doc.world.places_m ?? []) line(pen, places(ring(circle)), ink.quiet, 1, [2, 3]);
     if (doc.world.route_m) line(pen, places(doc.world.route_m), ink.route, 1, [5, 4]);
     if (track) this.marks(pen, doc, track, litRule);
     pen.restore();
@@ -216,6 +218,11 @@ function between(track, index, share, unit) {
 }
 
 /** The same of something that drives by itself, which no recovery moves. */
+function ring([x, y, radius]) {
+  const turns = Array.from({ length: 49 }, (_, part) => (part * Math.PI) / 24);
+  return turns.map((turn) => [x + radius * Math.cos(turn), y + radius * Math.sin(turn)]);
+}
+
 function moverPose(track, number, index, share, unit) {
   return mixed(track, track.movers[number], index, share, unit);
 }
