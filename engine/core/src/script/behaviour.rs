@@ -4,7 +4,7 @@ use super::guards;
 use super::outline::ScriptOutline;
 use super::params::{Param, ParamValues};
 use super::setup::SettingPlaces;
-use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText};
+use crate::diagnostic::{Mistakes, Result, SourceText};
 use crate::geometry::Twist;
 use crate::judge::compiled::CompiledScript;
 use crate::judge::memory::Remembered;
