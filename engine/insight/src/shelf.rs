@@ -13,6 +13,8 @@ use serde::{Serialize, Serializer};
 const TAG_FILE: &str = "tag.txt";
 /// A tag is a word or a few.
 const MOST_TAG: usize = 60;
+/// A part of a run stands in it or one folder below.
+const MOST_ABOVE: usize = 2;
 /// Runs stand in `runs/NAME/SEED`; deeper than this nobody looks.
 const MOST_DEPTH: usize = 4;
 
@@ -176,7 +178,7 @@ fn bytes_under(folder: &Path) -> u64 {
 pub fn tag_run(folder: &Path, tag: Option<&str>) -> Result<()> {
     read_stored(&folder.join(RUN_FILE))?;
     let whole = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
-    if let Some(above) = whole.ancestors().skip(1).take(MOST_DEPTH).find(|above| above.join(RUN_FILE).is_file()) {
+    if let Some(above) = whole.ancestors().skip(1).take(MOST_ABOVE).find(|above| above.join(RUN_FILE).is_file()) {
         let shown = |path: &Path| printable(&path.display().to_string());
         let message = format!("'{}' is a part of the run '{}'", shown(folder), shown(above));
         return Diagnostic::new("E-RUN-TAG", message).help(format!("tag that run: {}", shown(above))).fail();

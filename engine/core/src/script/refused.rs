@@ -7,7 +7,7 @@ use crate::diagnostic::{Diagnostic, SourceText, nearest_name, printable};
 use crate::judge::explain::{limit, lower, mistake, mistake_at, offset, unknown_name};
 use crate::judge::functions::FUNCTIONS;
 use crate::judge::sandbox;
-use rhai::{LexError, ParseError, ParseErrorType};
+use rhai::{LexError, ParseError, ParseErrorType, Position};
 
 /// An error of the parser.
 pub(super) fn syntax(source: &SourceText, error: &ParseError, own_names: &[String]) -> Diagnostic {
@@ -19,14 +19,10 @@ pub(super) fn syntax(source: &SourceText, error: &ParseError, own_names: &[Strin
     let at = |message: String, label: &str| mistake(source, "E-SCRIPT-SYNTAX", *position, message, label);
     match &**kind {
         ParseErrorType::BadInput(LexError::ImproperSymbol(mark, message)) if mark == OURS => {
-            let wrong = mistake(source, "E-SCRIPT-RULE", *position, message, "found this");
-            let assigns = source.text[offset(source, *position)..].starts_with("= ");
-            if assigns { wrong.help("write == to compare") } else { wrong }
+            form(source, *position, message)
         }
         ParseErrorType::AssignmentToInvalidLHS(_) if let Some(at) = assigned(source, offset(source, *position)) => {
-            Diagnostic::new("E-SCRIPT-SYNTAX", "'=' gives a variable a value, and does not compare")
-                .at(source, at..at + 1, "not here")
-                .help("write == to compare")
+            assignment(source, at)
         }
         ParseErrorType::VariableUndefined(name) => unknown_name(source, *position, name, own_names),
         ParseErrorType::Reserved(word)
@@ -75,6 +71,19 @@ pub(super) fn syntax(source: &SourceText, error: &ParseError, own_names: &[Strin
         }
         other => at(lower(&printable(&other.to_string())), "here"),
     }
+}
+
+/// A rule, a measure or a success that goes on otherwise than it should.
+fn form(source: &SourceText, position: Position, message: &str) -> Diagnostic {
+    let wrong = mistake(source, "E-SCRIPT-RULE", position, message, "found this");
+    let assigns = source.text[offset(source, position)..].starts_with("= ");
+    if assigns { wrong.help("write == to compare") } else { wrong }
+}
+
+fn assignment(source: &SourceText, at: usize) -> Diagnostic {
+    Diagnostic::new("E-SCRIPT-SYNTAX", "'=' gives a variable a value, and does not compare")
+        .at(source, at..at + 1, "not here")
+        .help("write == to compare")
 }
 
 /// Where the first `=` alone stands in the statement from a byte on.

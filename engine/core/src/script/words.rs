@@ -127,7 +127,7 @@ fn then(source: &SourceText, word: &Range<usize>) -> Option<Diagnostic> {
         return Some(wrong(source, word, format!("before '{found}' comes 'then'"), "not here", help));
     }
     let next: String = text[word.end..].trim_start().chars().take_while(|c| c.is_alphanumeric()).collect();
-    let near = nearest_name(found, ["then"].into_iter()).filter(|near| ends(&next) && *near != found)?;
+    let near = nearest_name(found, ["then"]).filter(|near| ends(&next) && *near != found)?;
     Some(wrong(source, word, format!("'{found}' has no meaning here"), "not known", format!("did you mean '{near}'?")))
 }
 

@@ -31,7 +31,7 @@ pub(crate) fn run(arguments: &CheckArguments, console: &mut Console) -> std::res
         }
         // Whatever is wrong is told in one shape, in one place.
         Err(fault) if format == CheckFormat::Json => {
-            console.json(&serde_json::json!({ "findings": fault.told_with_others() }))?;
+            console.json(&serde_json::json!({ "findings": fault.told_with_others(), "left_out": fault.left_out }))?;
             return Ok(fault.kind().exit_status());
         }
         Err(fault) => return Err(fault.into()),

@@ -100,9 +100,12 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
     console.json(&all)?;
     console.line(&format!("pictures: {}", out.display()))?;
     let alike = told_apart(&all, &grid, met.as_ref(), console)?;
-    if met.is_none() {
-        return Ok(u8::from(alike));
-    }
+    let new = met.is_some() && told_new(&all, arguments.new_share, console)?;
+    Ok(u8::from(alike || new))
+}
+
+/// Says how many images show states that training never met, or hardly; whether too many are new.
+fn told_new(all: &[SeenImage], new_share: f64, console: &mut Console) -> std::result::Result<bool, ConsoleError> {
     let rare = all.iter().filter(|seen| seen.visits.is_some_and(|visits| (1..FEW_VISITS).contains(&visits))).count();
     if rare > 0 {
         console.line(&format!(
@@ -112,14 +115,14 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
     }
     let share = all.iter().filter(|seen| seen.new == Some(true)).count() as f64 / all.len() as f64;
     console.line(&format!("new:      {:.0} % of {} images show a state never met", 100.0 * share, all.len()))?;
-    if share <= arguments.new_share {
-        return Ok(u8::from(alike));
+    if share <= new_share {
+        return Ok(false);
     }
     console.line(&format!(
         "warning:  more than {:.0} %: training did not see what these images show",
-        100.0 * arguments.new_share
+        100.0 * new_share
     ))?;
-    Ok(1)
+    Ok(true)
 }
 
 /// What a behaviour sees with. Of a script no world is needed: photographs have nothing to do with it.
