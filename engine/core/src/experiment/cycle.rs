@@ -2,8 +2,9 @@
 
 use crate::diagnostic::{Diagnostic, Result};
 use crate::geometry::Twist;
-use crate::judge::{Facts, Judge, NO_ACTION};
-use crate::robot::Robot;
+use crate::judge::{Facts, Judge, Judgement, NO_ACTION};
+use crate::outcome::Ending;
+use crate::robot::{Ended, Robot};
 use crate::sensors::observation::{Image, Observation};
 use crate::state::{Grid, StateMap};
 
@@ -12,6 +13,9 @@ use filter_api::{Descriptor, Format};
 
 /// From the first beam of the laser to the last, degrees.
 const LASER_VIEW_DEG: f64 = 180.0;
+
+/// In a script without goals, an attempt of so many steps went well.
+const LONG_STEPS: u64 = 400;
 
 /// A robot with what turns its observations into states and rewards. It does not know who chooses the actions.
 pub struct Cycle<R> {
@@ -28,6 +32,10 @@ pub struct Cycle<R> {
     /// What the judge's delayed rules have built up.
     potential: f64,
     laser_range_m: (f64, f64),
+    /// Whether the script can reach a goal.
+    has_goals: bool,
+    /// What the robot is told if it is to recover now.
+    ended: Ended,
 }
 
 impl<R> Cycle<R> {
@@ -78,6 +86,8 @@ impl<R: Robot> Cycle<R> {
             since_recovery: 0,
             potential: 0.0,
             laser_range_m: (settings.laser.min_range_m, settings.laser.max_range_m),
+            has_goals: plan.behaviour.has_goals(),
+            ended: Ended::default(),
         };
         cycle.perceive()?;
         cycle.calibrate()?;
@@ -115,6 +125,7 @@ impl<R: Robot> Cycle<R> {
     /// If the script fails.
     pub(super) fn swap_judge(&mut self, plan: &Plan) -> Result<()> {
         self.judge = plan.judge()?;
+        self.has_goals = plan.behaviour.has_goals();
         self.potential = 0.0;
         self.calibrate()?;
         self.rest()
@@ -178,6 +189,7 @@ impl<R: Robot> Cycle<R> {
         }
         self.steps += 1;
         self.potential = self.judge.potential();
+        self.ended = self.ended(&verdict);
         Ok(Step {
             index,
             state,
@@ -188,9 +200,17 @@ impl<R: Robot> Cycle<R> {
             potential,
             next_potential: self.potential,
             then: verdict.then,
+            to: verdict.to,
             entered: verdict.stage.filter(|entered| *entered != stage),
             contact: self.observation.contact,
         })
+    }
+
+    /// What the robot is told of an attempt that ends here.
+    fn ended(&self, verdict: &Judgement) -> Ended {
+        let ending = verdict.then.map(|then| then.ending(verdict.reward));
+        let lasted = self.since_recovery >= LONG_STEPS || ending == Some(Ending::Restart);
+        Ended { to: verdict.to, good: if self.has_goals { ending == Some(Ending::Goal) } else { lasted } }
     }
 
     /// Brings the robot back to a safe pose. Not a step: nothing is judged or learned from it.
@@ -198,7 +218,7 @@ impl<R: Robot> Cycle<R> {
     /// # Errors
     /// If there is no safe pose, or a sensor fails.
     pub fn recover(&mut self) -> Result<()> {
-        self.robot.recover()?;
+        self.robot.recover_after(std::mem::take(&mut self.ended))?;
         self.judge.recovered();
         self.potential = 0.0;
         self.since_recovery = 0;

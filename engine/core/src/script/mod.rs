@@ -26,6 +26,7 @@ mod setup;
 mod setup_table;
 mod source;
 mod spoilt;
+mod starts;
 mod stops;
 mod success;
 mod syntax;
@@ -38,7 +39,7 @@ mod words;
 
 pub use behaviour::Behaviour;
 pub(crate) use draft::Draft;
-pub(crate) use measurable::Measurable;
+pub(crate) use measurable::Nameable;
 pub use outline::{BeamLoop, Compared, Condition, Gathers, NamedFact, RuleOutline, ScriptOutline, UnusedName};
 pub use reference::{definitions, reference};
 pub(crate) use unread::Unread;

@@ -7,7 +7,7 @@ use crate::diagnostic::{Diagnostic, Mistakes, Result, printable};
 use crate::geometry::Twist;
 use crate::judge::explain;
 use crate::judge::views::number;
-use crate::settings::{self, FilterSettings, PolicySettings, Settings, Value};
+use crate::settings::{self, FilterSettings, PolicySettings, RecoverTo, Settings, Value};
 use rhai::{AST, ASTNode, Dynamic, Engine, Expr, FnCallExpr, Map, NativeCallContext, Position, Stmt};
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
@@ -124,14 +124,14 @@ pub(super) fn finish(log: &Log, code: &Code, ast: &AST, mistakes: &mut Mistakes)
 /// Where keys and their values stand, by call and key.
 type Entries = BTreeMap<(Position, String), (Position, Position)>;
 
-struct SetupReader<'a> {
+pub(super) struct SetupReader<'a> {
     code: &'a Code,
     ast: &'a AST,
     settings: Settings,
     places: SettingPlaces,
     unread: Unread,
     mistakes: &'a mut Mistakes,
-    call: Position,
+    pub(super) call: Position,
     entries: OnceCell<Entries>,
 }
 
@@ -154,6 +154,10 @@ impl SetupReader<'_> {
                 self.settings.stages = self.stages(stages)?;
                 self.mark("stages".to_owned(), self.call)
             }
+            ("starts", Some(names), options, None) if names.is_array() => {
+                self.settings.starts = self.starts(names, options, form)?;
+                self.mark("starts".to_owned(), self.call)
+            }
             ("policy", Some(policy), Some(path), None) if policy.is_string() && path.is_string() => {
                 let policy = PolicySettings { name: self.word(policy, form)?, path: self.word(path, form)? };
                 let place = format!("policy:{}", self.settings.policies.len());
@@ -166,12 +170,16 @@ impl SetupReader<'_> {
                     "recovery" => "to",
                     _ => "way",
                 };
-                let kind = self.word(kind, form)?;
+                let mut kind = self.word(kind, form)?;
+                if name == "recovery" && RecoverTo::of(&kind).is_none() {
+                    // The name of a start: whether the world has it is known later.
+                    self.settings.recovery.at = Some(std::mem::replace(&mut kind, RecoverTo::Start.word().to_owned()));
+                }
                 self.set_or_tell(name, key, &Value::Text(kind), self.call);
                 map.map_or(Ok(()), |map| self.group(name, map, form))
             }
             (group, Some(map), None, None)
-                if !matches!(group, "world" | "filter" | "actions" | "stages" | "policy") =>
+                if !matches!(group, "world" | "filter" | "actions" | "stages" | "starts" | "policy") =>
             {
                 self.group(group, map, form)
             }
@@ -179,12 +187,12 @@ impl SetupReader<'_> {
         }
     }
 
-    fn wrong<T>(&self, position: Position, message: String, label: &str, form: &str) -> Result<T> {
+    pub(super) fn wrong<T>(&self, position: Position, message: String, label: &str, form: &str) -> Result<T> {
         let diagnostic = explain::mistake(&self.code.source, "E-SCRIPT-SETTING", position, message, label);
         diagnostic.help(format!("write {form}")).fail()
     }
 
-    fn word(&self, value: Dynamic, form: &str) -> Result<String> {
+    pub(super) fn word(&self, value: Dynamic, form: &str) -> Result<String> {
         let word = value.into_string().unwrap_or_default();
         if word.trim().is_empty() {
             return self.wrong(self.call, "the name is empty".to_owned(), "no name", form);
@@ -338,7 +346,7 @@ impl SetupReader<'_> {
     }
 
     /// Where a key and its value stand in the map of the present call; the call itself if they are not written there.
-    fn entry(&self, key: &str) -> (Position, Position) {
+    pub(super) fn entry(&self, key: &str) -> (Position, Position) {
         let entries = self.entries.get_or_init(|| entries(self.ast));
         entries.get(&(self.call, key.to_owned())).copied().unwrap_or((self.call, self.call))
     }

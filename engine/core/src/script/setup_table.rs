@@ -29,6 +29,11 @@ pub(super) const SETUP: &[SetupCall] = &[
         "stages([\"search\", \"approach\"]);",
         "What the robot can be about: it begins with the first, also after every recovery. The stage is one more digit of the state.",
     ),
+    row(
+        "starts",
+        "starts([\"near\", \"far\"], #{ widen: 0.8 });",
+        "The world's starts that are used, by name. With `widen` the first alone, until of 20 attempts that share went well; then the next joins, and so on.",
+    ),
     row("run", "run(#{ steps: 5200 });", "The length and the rhythm of a run."),
     row("robot", "robot(#{ lag_s: 0.15 });", "How the robot moves."),
     row("camera", "camera(#{ tilt_deg: 42 });", "The camera and its mount."),
