@@ -59,6 +59,8 @@ mod pack;
 mod page;
 /// Filters listed and photographs seen through them; what cannot be seen.
 mod photos;
+/// Where attempts begin: places that scripts name, starts that join, marks that tests count.
+mod places;
 /// Recordings for viewers, read back by another reader.
 mod recording;
 /// Recorded runs through the program: replayed, explained, rescored, damaged.

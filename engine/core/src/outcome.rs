@@ -1,5 +1,6 @@
 //! How an attempt ends: what a script may say of it, and what that means.
 
+use crate::settings::RecoverTo;
 use std::iter::Sum;
 
 /// What a script says after `then`: the attempt ends, and the robot is put somewhere else.
@@ -13,6 +14,24 @@ pub enum Then {
     Goal,
     /// `then restart`: neither, such as a time that is up.
     Restart,
+}
+
+/// Where a script says the next attempt begins: what stands behind `to`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Destination {
+    /// As a word of recovery says.
+    Word(RecoverTo),
+    /// At the world's start with this index.
+    Start(usize),
+}
+
+impl Destination {
+    /// What a name means in a world whose starts have these names.
+    #[must_use]
+    pub fn of(name: &str, starts: &[impl AsRef<str>]) -> Option<Self> {
+        let start = || starts.iter().position(|start| start.as_ref() == name).map(Self::Start);
+        RecoverTo::of(name).map(Self::Word).or_else(start)
+    }
 }
 
 /// How an attempt ended.

@@ -3,13 +3,17 @@
 use crate::allowed::Allowed;
 use crate::diagnostic::{Diagnostic, Result};
 use crate::geometry::Twist;
-use crate::judge::{Facts, Judge, Leave, NO_ACTION};
-use crate::robot::Robot;
+use crate::judge::{Facts, Judge, Judgement, Leave, NO_ACTION};
+use crate::outcome::Ending;
+use crate::robot::{Ended, Robot};
 use crate::sensors::observation::{Image, Observation};
 use crate::state::{Grid, StateMap};
 
 use super::{Eyes, Plan, SeenView, Step, ViewStage};
 use filter_api::Format;
+
+/// In a script without goals, an attempt of so many steps went well.
+const LONG_STEPS: u64 = 400;
 
 /// A robot with what turns its observations into states and rewards. It does not know who chooses the actions.
 pub struct Cycle<R> {
@@ -29,6 +33,10 @@ pub struct Cycle<R> {
     laser_view_deg: f64,
     /// What guards leave of the actions now.
     leave: Leave,
+    /// Whether the script can reach a goal.
+    has_goals: bool,
+    /// What the robot is told if it is to recover now.
+    ended: Ended,
 }
 
 impl<R> Cycle<R> {
@@ -83,6 +91,8 @@ impl<R: Robot> Cycle<R> {
             laser_range_m: (settings.laser.min_range_m, settings.laser.max_range_m),
             laser_view_deg: settings.laser.field_of_view_deg,
             leave: Leave::default(),
+            has_goals: plan.behaviour.has_goals(),
+            ended: Ended::default(),
         };
         cycle.observation.ground = cycle.judge.reads_ground().then(Default::default);
         cycle.perceive()?;
@@ -123,6 +133,7 @@ impl<R: Robot> Cycle<R> {
         self.judge = plan.judge()?;
         self.eyes[0].look_for(self.judge.looks());
         self.observation.ground = self.judge.reads_ground().then(Default::default);
+        self.has_goals = plan.behaviour.has_goals();
         (self.potential, self.leave) = (0.0, Leave::default());
         self.calibrate()?;
         self.rest()
@@ -206,6 +217,7 @@ impl<R: Robot> Cycle<R> {
         }
         self.steps += 1;
         self.potential = self.judge.potential();
+        self.ended = self.ended(&verdict);
         Ok(Step {
             index,
             state,
@@ -216,6 +228,7 @@ impl<R: Robot> Cycle<R> {
             potential,
             next_potential: self.potential,
             then: verdict.then,
+            to: verdict.to,
             entered: verdict.stage.filter(|entered| *entered != stage),
             contact: self.observation.contact,
             guarded,
@@ -223,12 +236,19 @@ impl<R: Robot> Cycle<R> {
         })
     }
 
+    /// What the robot is told of an attempt that ends here.
+    fn ended(&self, verdict: &Judgement) -> Ended {
+        let ending = verdict.then.map(|then| then.ending(verdict.reward));
+        let lasted = self.since_recovery >= LONG_STEPS || ending == Some(Ending::Restart);
+        Ended { to: verdict.to, good: if self.has_goals { ending == Some(Ending::Goal) } else { lasted } }
+    }
+
     /// Brings the robot back to a safe pose. Not a step: nothing is judged or learned from it.
     ///
     /// # Errors
     /// If there is no safe pose, or a sensor fails.
     pub fn recover(&mut self) -> Result<()> {
-        self.robot.recover()?;
+        self.robot.recover_after(std::mem::take(&mut self.ended))?;
         self.judge.recovered();
         self.potential = 0.0;
         self.since_recovery = 0;

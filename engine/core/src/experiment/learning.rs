@@ -36,6 +36,8 @@ pub struct Learned {
     pub policy: Policy,
     /// The path of the first 400 steps.
     pub early: Trail,
+    /// Of a script that widens its starts: the step after which each was in use, in the order of its list.
+    pub joined: Vec<u64>,
     /// Hash over every step and what was learned, 64 hexadecimal digits.
     pub state_hash: String,
 }
@@ -119,6 +121,7 @@ pub struct Learning<R = SimulatedRobot, L = ShippedLearner> {
     tally: Tally,
     early: Recorder,
     hash: StateHash,
+    joined: Joined,
     fault: Option<Box<Diagnostic>>,
 }
 
@@ -145,6 +148,7 @@ impl<R: Robot, L: Learner> Learning<R, L> {
             tally: Tally::new(plan.behaviour.rules().len(), plan.settings.run.steps),
             early: Recorder::new(WINDOW_STEPS, cycle.robot()),
             hash: StateHash::default(),
+            joined: Joined::new(plan),
             cycle,
             fault: None,
         }
@@ -188,9 +192,9 @@ impl<R: Robot, L: Learner> Learning<R, L> {
         if self.fault.is_some() {
             return Ok(());
         }
-        let Self { seed, cycle, learner, tally, early, hash, .. } = self;
+        let Self { seed, cycle, learner, tally, early, hash, joined, .. } = self;
         let windows = Windows { seed: *seed, tally, stop, report };
-        let mut observers = (ledger, (hash, (early, windows)));
+        let mut observers = ((ledger, joined), (hash, (early, windows)));
         match drive(cycle, &mut Learns(learner), &mut observers, steps) {
             Ok(_) => Ok(()),
             Err(error) if cycle.steps() == 0 => Err(error),
@@ -229,6 +233,7 @@ impl<R: Robot, L: Learner> Learning<R, L> {
             tally: self.tally.clone(),
             policy: self.learner.policy(),
             early: self.early.clone().finish(),
+            joined: self.joined.steps.clone(),
             state_hash: self.hash.clone().finish_with(&self.learner),
         }
     }
@@ -238,6 +243,35 @@ impl<R: Robot, L: Learner> Learning<R, L> {
     pub fn finish(&mut self) -> Learned {
         self.learner.forget();
         self.snapshot()
+    }
+}
+
+/// Notes when the starts of a script that widens them came into use.
+struct Joined {
+    steps: Vec<u64>,
+    /// How many there are to come.
+    most: usize,
+}
+
+impl Joined {
+    fn new(plan: &Plan) -> Self {
+        let starts = &plan.settings.starts;
+        let most = if starts.widen.is_some() { starts.names.len() } else { 0 };
+        let mut steps = Vec::with_capacity(most);
+        steps.extend((most > 0).then_some(0));
+        Self { steps, most }
+    }
+}
+
+impl<R: Robot> Observer<R> for Joined {
+    fn stepped(&mut self, _: &Cycle<R>, _: &Step) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    fn recovered(&mut self, cycle: &Cycle<R>) {
+        if self.steps.len() < cycle.robot().starts_in_use().min(self.most) {
+            self.steps.push(cycle.steps());
+        }
     }
 }
 

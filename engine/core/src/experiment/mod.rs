@@ -63,7 +63,7 @@ pub use seeds::in_parallel;
 pub use sight::Sight;
 pub use snapshot::{SeenView, Snapshot};
 pub use step::Step;
-pub use summary::{ConditionSpread, FigureSpread, Spread, Summary};
+pub use summary::{ConditionSpread, FigureSpread, Spread, StartJoined, Summary};
 pub use tally::Tally;
 pub use testing::{CombinationTest, Decider, TestRun, frozen, test, test_and_watch, test_choices, test_robot};
 pub use trail::Trail;

@@ -12,7 +12,7 @@ use crate::judge::Judge;
 use crate::learner::{Mirror, Task};
 use crate::random::{Random, Stream};
 use crate::robot::SimulatedRobot;
-use crate::script::{Behaviour, Draft, Measurable, Unread};
+use crate::script::{Behaviour, Draft, Nameable, Unread};
 use crate::settings::Settings;
 use crate::state::{Grid, StateMap};
 use crate::verdict::Success;
@@ -156,12 +156,7 @@ impl Plan {
             let height_m = plan.layout.level_height_m(&plan.settings.robot.body);
             plan.behaviour.find_unreachable(&plan.settings.laser, height_m, &mut mistakes);
         }
-        let movers: Vec<&str> = plan.layout.movers.iter().map(|mover| mover.name.as_str()).collect();
-        let places: Vec<&str> = plan.layout.places.iter().map(|place| place.name.as_str()).collect();
-        let (has_route, has_squares) = (plan.layout.lap.is_some(), FloorSquares::fit(&plan.layout));
-        let has_gates = !plan.layout.gates.is_empty();
-        let world = Measurable { has_route, movers: &movers, places: &places, has_gates, has_squares };
-        plan.behaviour.find_unmeasurable(&world, &mut mistakes);
+        plan.find_unnamed(&mut mistakes);
         let robot = ["camera", "laser", "movers", "recovery", "robot", "run"];
         if !robot.iter().any(|call| unread.any_of(call))
             && mistakes.take(SimulatedRobot::new(&plan.layout, &plan.settings, 0)).is_some()
@@ -170,6 +165,25 @@ impl Plan {
             mistakes.take(outlook::check_outlook(&plan));
         }
         mistakes.end().map(|()| plan)
+    }
+
+    /// Adds what the script names, or is measured by, and the world does not have.
+    fn find_unnamed(&self, mistakes: &mut Mistakes) {
+        let Layout { name, starts, movers, places, gates, lap, .. } = &*self.layout;
+        let starts: Vec<&str> = starts.iter().map(|start| start.name.as_str()).collect();
+        let movers: Vec<&str> = movers.iter().map(|mover| mover.name.as_str()).collect();
+        let places: Vec<&str> = places.iter().map(|place| place.name.as_str()).collect();
+        let world = Nameable {
+            world: name,
+            starts: &starts,
+            has_route: lap.is_some(),
+            movers: &movers,
+            places: &places,
+            has_gates: !gates.is_empty(),
+            has_squares: FloorSquares::fit(&self.layout),
+        };
+        self.behaviour.find_unmeasurable(&world, mistakes);
+        self.behaviour.find_unplaced(&self.settings, &world, mistakes);
     }
 
     fn parts(&self) -> Parts<'_> {
@@ -270,7 +284,8 @@ impl Plan {
     /// # Errors
     /// If a rule does not fit the settings, such as a beam that the laser does not have.
     pub fn judge(&self) -> Result<Judge> {
-        self.parts().judge()
+        let starts = self.layout.starts.iter().map(|start| start.name.clone()).collect();
+        Ok(self.parts().judge()?.in_world(starts))
     }
 }
 

@@ -30,6 +30,9 @@ pub struct StepReasons {
     pub recover: bool,
     /// How: `failure`, `goal` or `restart`; null if it did not.
     pub ending: Option<&'static str>,
+    /// Where the script said that the next attempt begins, by name; null if it did not say.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub to: Option<String>,
     /// Whether the body touched something.
     pub contact: bool,
     /// Whether the robot lost its footing.
@@ -153,6 +156,7 @@ impl StepReasons {
             reward: step.reward,
             recover: step.then.is_some(),
             ending: step.ending().map(Ending::word),
+            to: step.to.map(|to| plan.layout.name_of(to).to_owned()),
             contact: step.contact,
             fallen: record.fallen,
             pose: [pose.x_m, pose.y_m, pose.yaw_rad],

@@ -1,7 +1,7 @@
 //! What one step led to.
 
 use crate::allowed::Allowed;
-use crate::outcome::{Ending, Then};
+use crate::outcome::{Destination, Ending, Then};
 
 /// One step, from the choice of an action to what the script says of it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -24,6 +24,8 @@ pub struct Step {
     pub next_potential: f64,
     /// What the script says if the attempt ends here: the robot is put somewhere else.
     pub then: Option<Then>,
+    /// Where the next attempt begins, if the script says so; else as `recovery` says.
+    pub to: Option<Destination>,
     /// The stage that the script wants next, if a rule says one: it may be the present one.
     pub entered: Option<usize>,
     /// Whether the body touched something.

@@ -24,6 +24,9 @@ pub struct Summary {
     pub learned_at: Option<u64>,
     /// Sum of the rewards of each window of 400 steps.
     pub reinforcement_per_400: Vec<f64>,
+    /// Of a script that widens its starts: when each came into use; absent from others.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub starts: Vec<StartJoined>,
     /// What each rule did while learning.
     pub rules: Vec<RuleTotal>,
     /// How many states were visited; of a combination, how many its policies know.
@@ -66,6 +69,7 @@ impl Summary {
             steps_per_second: 0.0,
             learned_at: learned.and_then(|learned| success.learned_at(&learned.tally.counts())),
             reinforcement_per_400: curve,
+            starts: learned.map_or_else(Vec::new, |learned| starts_joined(plan, learned)),
             rules: rule_totals(plan, learned.map_or(&tested.tally, |learned| &learned.tally)),
             states_seen: learned.map_or_else(
                 || plan.members.iter().map(|member| member.policy.states_met()).sum(),
@@ -87,6 +91,23 @@ impl Summary {
         self.steps_per_second = ((self.steps + self.test.steps) as f64 / seconds.max(1e-9)).round();
         self
     }
+}
+
+/// When a start came into use.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct StartJoined {
+    /// Its name in the world.
+    pub name: String,
+    /// After how many steps of learning; null if it never did.
+    pub joined_at: Option<u64>,
+}
+
+fn starts_joined(plan: &Plan, learned: &Learned) -> Vec<StartJoined> {
+    let starts = &plan.settings.starts;
+    let names = starts.names.iter().filter(|_| starts.widen.is_some()).enumerate();
+    names
+        .map(|(index, name)| StartJoined { name: name.clone(), joined_at: learned.joined.get(index).copied() })
+        .collect()
 }
 
 /// What is counted has no column for a rule that only earlier legs had, unless it was counted in these legs.

@@ -10,7 +10,7 @@ use super::rule::{Clause, CompiledRule, ScriptClause};
 use super::running;
 use super::views::{AllFacts, SeenView, number, view};
 use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
-use crate::outcome::Then;
+use crate::outcome::{Destination, Then};
 use rhai::{CallFnOptions, Dynamic, EvalAltResult, Map, Scope};
 use std::ops::Range;
 use std::sync::Arc;
@@ -22,6 +22,8 @@ pub struct Judgement {
     pub reward: f64,
     /// What the script says if the attempt ends here.
     pub then: Option<Then>,
+    /// Where the next attempt begins, if the script says so.
+    pub to: Option<Destination>,
     /// The stage that the script wants next, whether or not it is another one.
     pub stage: Option<usize>,
 }
@@ -38,6 +40,8 @@ pub(crate) struct Present {
     pub calibrated: Option<Arc<Dynamic>>,
     /// The present step as native trees read it.
     pub slots: Vec<Slot>,
+    /// The names of the world's starts; nothing where the world is not known.
+    pub starts: Option<Vec<String>>,
 }
 
 impl Present {
@@ -166,7 +170,7 @@ impl Present {
         }
         let kind = explain::plain_kind(result.type_name());
         let read = match result.try_cast::<Map>() {
-            Some(map) => of_map(&map, &self.compiled.stages),
+            Some(map) => of_map(&map, &self.compiled.stages, self.starts.as_deref()),
             None => Err(format!("'fn reward' must return a number or a map, found {kind}")),
         };
         read.map_err(|message| {
@@ -187,8 +191,8 @@ impl Present {
 }
 
 /// What a map that `fn reward` returned says, or what is wrong with it.
-fn of_map(map: &Map, stages: &[String]) -> std::result::Result<Judgement, String> {
-    const KEYS: [&str; 4] = ["value", "then", "recover", "stage"];
+fn of_map(map: &Map, stages: &[String], starts: Option<&[String]>) -> std::result::Result<Judgement, String> {
+    const KEYS: [&str; 5] = ["value", "then", "recover", "to", "stage"];
     if let Some(key) = map.keys().find(|key| !KEYS.contains(&key.as_str())) {
         let near = nearest_name(key, KEYS).map_or(String::new(), |near| format!("; did you mean '{near}'?"));
         return Err(format!("the map that 'fn reward' returned has a key '{}'{near}", printable(key)));
@@ -212,16 +216,39 @@ fn of_map(map: &Map, stages: &[String]) -> std::result::Result<Judgement, String
             Some(then.ok_or_else(|| format!("'then' in the map that 'fn reward' returned must be one of {words}"))?)
         }
     };
-    let stage = match map.get("stage").map(|stage| stage.clone().into_immutable_string()) {
-        None => None,
+    let to = destination(map, then.is_some(), starts)?;
+    Ok(Judgement { reward, then, to, stage: stage(map, stages)? })
+}
+
+/// Where the map says that the next attempt begins.
+fn destination(map: &Map, ends: bool, starts: Option<&[String]>) -> std::result::Result<Option<Destination>, String> {
+    let Some(to) = map.get("to") else { return Ok(None) };
+    let Ok(name) = to.clone().into_immutable_string() else {
+        return Err("'to' in the map that 'fn reward' returned must be the name of a start".to_owned());
+    };
+    if !ends {
+        return Err("the map that 'fn reward' returned has 'to' without 'then': nothing ends".to_owned());
+    }
+    let Some(starts) = starts else { return Ok(None) };
+    let known = Destination::of(&name, starts);
+    let names = || starts.iter().map(|start| format!("\"{}\"", printable(start))).collect::<Vec<_>>().join(", ");
+    known.map(Some).ok_or_else(|| {
+        let name = printable(&name);
+        format!("this world has no start \"{name}\"; it has {}, and there are the words of recovery", names())
+    })
+}
+
+/// The stage that the map wants next.
+fn stage(map: &Map, stages: &[String]) -> std::result::Result<Option<usize>, String> {
+    match map.get("stage").map(|stage| stage.clone().into_immutable_string()) {
+        None => Ok(None),
         Some(name) => {
             let known = name.ok().and_then(|name| stages.iter().position(|stage| *stage == name.as_str()));
             let words = stages.iter().map(|stage| format!("\"{stage}\"")).collect::<Vec<_>>().join(", ");
-            Some(known.ok_or_else(|| match stages {
+            known.map(Some).ok_or_else(|| match stages {
                 [] => "the script has no stages: write stages([\"first\", \"second\"]);".to_owned(),
                 _ => format!("'stage' in the map that 'fn reward' returned must be one of {words}"),
-            })?)
+            })
         }
-    };
-    Ok(Judgement { reward, then, stage })
+    }
 }

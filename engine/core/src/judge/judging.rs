@@ -9,6 +9,7 @@ use super::odometry::Odometry;
 use super::readings::{self, PartRead};
 use crate::diagnostic::{Diagnostic, Result};
 use crate::geometry::Twist;
+use crate::outcome::Destination;
 use crate::settings::ScanFan;
 use std::sync::Arc;
 
@@ -27,6 +28,8 @@ pub struct Judge {
     /// For each rule that fires once, whether it has fired and its condition has held ever since.
     spent: Vec<bool>,
     fired: Vec<Option<f64>>,
+    /// For each rule, where the next attempt begins after it.
+    destinations: Vec<Option<Destination>>,
     period_s: f64,
     stage: StageNow,
     odometry: Odometry,
@@ -66,7 +69,7 @@ impl Judge {
         let built_up = built_up.collect();
         let memory = Memory::new(&compiled.remembered, entries, period_s);
         let (previous, spent) = (Arc::clone(&facts), vec![false; needed.len()]);
-        let present = Present { compiled, facts, previous, memory, calibrated, slots: Vec::new() };
+        let present = Present { compiled, facts, previous, memory, calibrated, slots: Vec::new(), starts: None };
         let (stage, odometry) = (StageNow::default(), Odometry::default());
         let digits = vec![0; present.compiled.bins.len() + usize::from(!present.compiled.stages.is_empty())];
         Self {
@@ -78,6 +81,7 @@ impl Judge {
             scale,
             spent,
             fired,
+            destinations: Vec::new(),
             period_s,
             stage,
             odometry,
@@ -104,6 +108,16 @@ impl Judge {
     /// What guards take away.
     pub(crate) fn guarding(&self) -> &Guarding {
         &self.guarding
+    }
+
+    /// The judge in a world whose starts have these names.
+    #[must_use]
+    pub(crate) fn in_world(mut self, starts: Vec<String>) -> Self {
+        let rules = self.present.compiled.rules.iter();
+        let places = rules.map(|rule| rule.to_place.as_ref().and_then(|(place, _)| Destination::of(place, &starts)));
+        self.destinations = places.collect();
+        self.present.starts = Some(starts);
+        self
     }
 
     /// The facts of the last step.
@@ -232,7 +246,7 @@ impl Judge {
     }
 
     fn rules(&mut self) -> Result<Judgement> {
-        let Self { present, held, needed, scale, spent, fired, stage, .. } = self;
+        let Self { present, held, needed, scale, spent, fired, destinations, stage, .. } = self;
         fired.fill(None);
         let mut judgement = Judgement::default();
         let compiled = Arc::clone(&present.compiled);
@@ -260,6 +274,7 @@ impl Judge {
             judgement.stage = judgement.stage.or(rule.to_stage);
             if rule.then.is_some() {
                 judgement.then = rule.then;
+                judgement.to = destinations.get(index).copied().flatten();
                 return Ok(judgement);
             }
         }
@@ -272,7 +287,7 @@ impl Judge {
             present.memory.note_fired(rules.len());
             judgement.stage = judgement.stage.or(own.stage);
             judgement.reward += own.reward;
-            judgement.then = own.then;
+            (judgement.then, judgement.to) = (own.then, own.to);
         }
         Ok(judgement)
     }

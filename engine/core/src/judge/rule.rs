@@ -64,6 +64,8 @@ pub(crate) struct CompiledRule {
     pub value: Clause<Number>,
     pub value_span: Range<usize>,
     pub then: Option<Then>,
+    /// Where the next attempt begins, and where that is written.
+    pub to_place: Option<(String, Range<usize>)>,
     /// The stages in which it is judged, a bit for each; nothing for all.
     pub stages: Option<u32>,
     /// Whether it fires once each time its condition comes true.

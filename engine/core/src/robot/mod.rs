@@ -5,9 +5,11 @@
 
 mod recovery;
 mod simulated;
+mod starts_in_use;
 
 use crate::diagnostic::Result;
 use crate::geometry::{Pose, Twist};
+use crate::outcome::Destination;
 use crate::sensors::observation::{Image, Observation};
 
 use recovery::Recovery;
@@ -35,6 +37,15 @@ pub trait Robot {
     /// If there is no safe pose.
     fn recover(&mut self) -> Result<()>;
 
+    /// The same after an attempt about which something may be known: where the next one is to begin. A robot that cannot tell
+    /// places apart goes to the usual one.
+    ///
+    /// # Errors
+    /// As [`Robot::recover`].
+    fn recover_after(&mut self, _ended: Ended) -> Result<()> {
+        self.recover()
+    }
+
     /// Where the robot is, if anything but its own sensors knows: the truth of a simulator, or a localiser in a mapped
     /// place. Without an answer, a test has no laps, paths or distances.
     fn whereabouts(&self) -> Option<Whereabouts> {
@@ -44,6 +55,11 @@ pub trait Robot {
     /// The world's start at which it was put last, by its index there; nothing if it was put elsewhere.
     fn start(&self) -> Option<usize> {
         None
+    }
+
+    /// How many of the starts that its script lists are in use by now.
+    fn starts_in_use(&self) -> usize {
+        0
     }
 
     /// Where the thing with this index among those that drive by themselves is, if there is one and its place is known.
@@ -66,6 +82,15 @@ pub trait Robot {
     fn photograph(&self) -> Option<Image> {
         None
     }
+}
+
+/// What is said of an attempt when it has ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Ended {
+    /// Where the next one is to begin; nothing for the usual place.
+    pub to: Option<Destination>,
+    /// It went well: it ended in a goal or, where there are none, in a restart or after 400 steps.
+    pub good: bool,
 }
 
 /// Where a robot is in its world.

@@ -2,9 +2,12 @@
 
 use crate::diagnostic::{Diagnostic, Result};
 use crate::geometry::{Point2, Pose};
+use crate::outcome::Destination;
 use crate::random::{Random, Stream};
-use crate::settings::{RecoverTo, RecoverySettings};
+use crate::settings::{RecoverTo, RecoverySettings, Settings};
 use crate::world::{Layout, Route, World};
+
+use super::starts_in_use::StartsInUse;
 
 /// How often a shifted pose is drawn before the unshifted ones are tried.
 const DRAWS: usize = 50;
@@ -23,53 +26,89 @@ pub(super) struct Put {
 #[derive(Debug, Clone)]
 pub(super) struct Recovery {
     settings: RecoverySettings,
+    usual: Destination,
+    starts: StartsInUse,
     random: Random,
 }
 
 impl Recovery {
-    /// Recovery under a run's seed.
+    /// Recovery in a world, under a run's seed.
     #[must_use]
-    pub(super) fn new(settings: &RecoverySettings, seed: u64) -> Self {
-        Self { settings: settings.clone(), random: Random::new(seed, Stream::Recovery) }
+    pub(super) fn new(settings: &Settings, layout: &Layout, seed: u64) -> Self {
+        let Settings { recovery, starts, .. } = settings;
+        let number = |name: &String| layout.starts.iter().position(|start| start.name == *name);
+        let named = recovery.at.as_ref().filter(|_| recovery.to == RecoverTo::Start).and_then(number);
+        let listed: Vec<usize> = match starts.names.as_slice() {
+            [] => (0..layout.starts.len()).collect(),
+            names => names.iter().filter_map(number).collect(),
+        };
+        Self {
+            settings: recovery.clone(),
+            usual: named.map_or(Destination::Word(recovery.to), Destination::Start),
+            starts: StartsInUse::new(listed, starts.widen),
+            random: Random::new(seed, Stream::Recovery),
+        }
     }
 
-    /// A safe pose: on the lap route, at a start or behind the first mover, shifted at random.
+    /// Counts an attempt that has ended, by the start where it began.
+    pub(super) fn count(&mut self, start: Option<usize>, good: bool) {
+        self.starts.count(start, good);
+    }
+
+    /// How many of the listed starts are in use.
+    pub(super) fn starts_in_use(&self) -> usize {
+        self.starts.in_use().len()
+    }
+
+    /// A safe pose, shifted at random: at a place that is asked for, else where recovery usually puts the robot.
     ///
     /// # Errors
     /// `E-RECOVERY-ROUTE` or `E-RECOVERY-MOVER` if the world has no lap route or no mover to recover to;
     /// `E-RECOVERY-BLOCKED` if every pose that may be used is blocked or has no ground under it.
-    pub(super) fn pose(&mut self, world: &World) -> Result<Put> {
+    pub(super) fn pose(&mut self, world: &World, to: Option<Destination>) -> Result<Put> {
+        let to = to.unwrap_or(self.usual);
         for _ in 0..DRAWS {
-            let Put { pose, start } = self.base(world)?;
+            let Put { pose, start } = self.base(world, to)?;
             let pose = self.shifted(pose);
             if world.is_safe(0, pose) {
                 return Ok(Put { pose, start });
             }
         }
-        let safe = |put: &Put| world.is_safe(0, put.pose);
-        let found = if self.settings.to == RecoverTo::Behind {
-            self.farther_behind(world).map(anywhere).find(safe)
-        } else {
-            let starts = (0..world.layout().starts.len()).map(|start| at_start(world.layout(), start));
-            starts.chain(lap(world.layout()).into_iter().flat_map(along).map(anywhere)).find(safe)
+        let (layout, safe) = (world.layout(), |put: &Put| world.is_safe(0, put.pose));
+        let found = match to {
+            Destination::Word(RecoverTo::Behind) => self.farther_behind(world).map(anywhere).find(safe),
+            _ => {
+                let wanted = if let Destination::Start(start) = to { Some(start) } else { None };
+                let listed = self.starts.in_use().iter().copied();
+                let starts = wanted.into_iter().chain(listed).chain(0..layout.starts.len());
+                let starts = starts.map(|start| at_start(layout, start));
+                starts.chain(lap(layout).into_iter().flat_map(along).map(anywhere)).find(safe)
+            }
         };
-        found.ok_or_else(|| self.blocked(world))
+        found.ok_or_else(|| blocked(world, to))
     }
 
-    fn base(&mut self, world: &World) -> Result<Put> {
+    fn base(&mut self, world: &World, to: Destination) -> Result<Put> {
         let layout = world.layout();
-        match self.settings.to {
+        let word = match to {
+            Destination::Start(start) => return Ok(at_start(layout, start)),
+            Destination::Word(word) => word,
+        };
+        match word {
             RecoverTo::Nearest => {
                 let pose = world.body(0).pose;
-                let route = lap(layout).ok_or_else(|| self.no_route(layout))?;
+                let route = lap(layout).ok_or_else(|| no_route(layout, word))?;
                 Ok(anywhere(route.pose_at(route.nearest(Point2::new(pose.x_m, pose.y_m)).0)))
             }
             RecoverTo::Random => {
-                let route = lap(layout).ok_or_else(|| self.no_route(layout))?;
+                let route = lap(layout).ok_or_else(|| no_route(layout, word))?;
                 Ok(anywhere(route.pose_at(self.random.between(0.0, route.length_m()))))
             }
             RecoverTo::Behind => self.farther_behind(world).next().map(anywhere).ok_or_else(|| no_mover(layout)),
-            RecoverTo::Start => Ok(at_start(layout, self.random.below(layout.starts.len() as u32) as usize)),
+            RecoverTo::Start => {
+                let starts = self.starts.in_use();
+                Ok(at_start(layout, starts[self.random.below(starts.len() as u32) as usize]))
+            }
         }
     }
 
@@ -99,31 +138,28 @@ impl Recovery {
             pose.yaw_rad + self.random.between(-turn, turn),
         )
     }
+}
 
-    fn no_route(&self, layout: &Layout) -> Box<Diagnostic> {
-        let to = self.settings.to.word();
-        let message = format!("recovery(\"{to}\") needs the route 'lap', and the world '{}' has none", layout.name);
-        ends(layout, "E-RECOVERY-ROUTE", message)
-            .help(
-                "add a closed [[route]] with name = \"lap\" to the world, or write recovery(\"start\") in the script \
-             (or --set recovery.to=start)",
-            )
-            .into()
-    }
+fn no_route(layout: &Layout, to: RecoverTo) -> Box<Diagnostic> {
+    let to = to.word();
+    let message = format!("recovery(\"{to}\") needs the route 'lap', and the world '{}' has none", layout.name);
+    ends(layout, "E-RECOVERY-ROUTE", message)
+        .help(
+            "add a closed [[route]] with name = \"lap\" to the world, or write recovery(\"start\") in the script \
+         (or --set recovery.to=start)",
+        )
+        .into()
+}
 
-    fn blocked(&self, world: &World) -> Box<Diagnostic> {
-        let name = &world.layout().name;
-        let (places, help) = if self.settings.to == RecoverTo::Behind {
-            (
-                "place behind the first mover",
-                "give the mover a longer route, or keep the route clear of solids and edges",
-            )
-        } else {
-            ("start and route pose", "move the starts or the route away from walls, boxes and edges")
-        };
-        let message = format!("the robot cannot recover: every {places} of world '{name}' is blocked");
-        Box::new(Diagnostic::new("E-RECOVERY-BLOCKED", message).help(help))
-    }
+fn blocked(world: &World, to: Destination) -> Box<Diagnostic> {
+    let name = &world.layout().name;
+    let (places, help) = if to == Destination::Word(RecoverTo::Behind) {
+        ("place behind the first mover", "give the mover a longer route, or keep the route clear of solids and edges")
+    } else {
+        ("start and route pose", "move the starts or the route away from walls, boxes and edges")
+    };
+    let message = format!("the robot cannot recover: every {places} of world '{name}' is blocked");
+    Box::new(Diagnostic::new("E-RECOVERY-BLOCKED", message).help(help))
 }
 
 fn anywhere(pose: Pose) -> Put {
@@ -180,8 +216,11 @@ mod tests {
         World::new(Arc::new(layout.unwrap_or_else(|error| panic!("{error:?}"))), &[robot], 0.5, 1)
     }
 
-    fn exact(to: RecoverTo) -> Recovery {
-        Recovery::new(&RecoverySettings { to, distance_m: 1.1, position_m: 0.0, yaw_deg: 0.0 }, 1)
+    /// Where recovery puts the robot, to the millimetre.
+    fn exact(to: RecoverTo, world: &World) -> Result<Pose> {
+        let recovery = RecoverySettings { to, at: None, distance_m: 1.1, position_m: 0.0, yaw_deg: 0.0 };
+        let settings = Settings { recovery, ..Settings::default() };
+        Recovery::new(&settings, world.layout(), 1).pose(world, None).map(|put| put.pose)
     }
 
     fn is_near(pose: Pose, x_m: f64, y_m: f64, yaw_rad: f64) -> bool {
@@ -191,12 +230,12 @@ mod tests {
     #[test]
     fn behind_a_mover_is_a_place_on_its_route_that_looks_along_it() {
         let mut world = world(&format!("{CORNER}{MOVER}"));
-        assert!(is_near(exact(RecoverTo::Behind).pose(&world).unwrap().pose, 0.9, 0.0, 0.0));
+        assert!(is_near(exact(RecoverTo::Behind, &world).unwrap(), 0.9, 0.0, 0.0));
         for _ in 0..7 {
             world.advance(&[]);
         }
         // 2 + 3.5 m along: 1.5 m past the corner; 1.1 m less is on the second side too.
-        assert!(is_near(exact(RecoverTo::Behind).pose(&world).unwrap().pose, 4.0, 0.4, FRAC_PI_2));
+        assert!(is_near(exact(RecoverTo::Behind, &world).unwrap(), 4.0, 0.4, FRAC_PI_2));
     }
 
     #[test]
@@ -205,7 +244,7 @@ mod tests {
         for _ in 0..100 {
             world.advance(&[]);
         }
-        assert!(is_near(exact(RecoverTo::Behind).pose(&world).unwrap().pose, 4.0, 2.9, FRAC_PI_2));
+        assert!(is_near(exact(RecoverTo::Behind, &world).unwrap(), 4.0, 2.9, FRAC_PI_2));
     }
 
     #[test]
@@ -213,21 +252,21 @@ mod tests {
         let wall = "[[wall]]\npoints_m = [[1, -1], [1, 1]]\n";
         let world = world(&format!("{CORNER}{}{wall}", MOVER.replace("= 2", "= 3")));
         // 1.9 m along is free; 0.25 m of half length ahead of the wall it would be at 1.3 m at least.
-        assert!(is_near(exact(RecoverTo::Behind).pose(&world).unwrap().pose, 1.9, 0.0, 0.0));
+        assert!(is_near(exact(RecoverTo::Behind, &world).unwrap(), 1.9, 0.0, 0.0));
         let world = self::world(&format!("{CORNER}{MOVER}{}", wall.replace("[1, ", "[0.9, ")));
-        assert!(is_near(exact(RecoverTo::Behind).pose(&world).unwrap().pose, 0.4, 0.0, 0.0));
+        assert!(is_near(exact(RecoverTo::Behind, &world).unwrap(), 0.4, 0.0, 0.0));
     }
 
     #[test]
     fn a_world_without_what_recovery_needs_is_an_error_that_names_it() {
         let bare = world(CORNER);
-        assert_eq!(exact(RecoverTo::Behind).pose(&bare).unwrap_err().code, "E-RECOVERY-MOVER");
+        assert_eq!(exact(RecoverTo::Behind, &bare).unwrap_err().code, "E-RECOVERY-MOVER");
         for to in [RecoverTo::Nearest, RecoverTo::Random] {
-            let error = exact(to).pose(&bare).unwrap_err();
+            let error = exact(to, &bare).unwrap_err();
             assert_eq!(error.code, "E-RECOVERY-ROUTE");
             let help = error.help.unwrap();
             assert!(help.contains("name = \"lap\"") && help.contains("recovery(\"start\")"), "{help}");
         }
-        assert!(is_near(exact(RecoverTo::Start).pose(&bare).unwrap().pose, 0.0, 3.0, 0.0));
+        assert!(is_near(exact(RecoverTo::Start, &bare).unwrap(), 0.0, 3.0, 0.0));
     }
 }

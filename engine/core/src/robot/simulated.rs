@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Recovery, Robot, Whereabouts};
+use super::{Ended, Recovery, Robot, Whereabouts};
 use crate::diagnostic::Result;
 use crate::geometry::{Pose, Twist};
 use crate::sensors::observation::{Image, Observation};
@@ -38,8 +38,8 @@ impl SimulatedRobot {
         let camera = Camera::new(&layout.scene, &settings.camera, seed);
         let laser = Laser::new(&layout.scene, &settings.laser, seed);
         let ground = GroundSensors::new(&layout.scene, &settings.ground);
-        let mut recovery = Recovery::new(&settings.recovery, seed);
-        let put = recovery.pose(&world)?;
+        let mut recovery = Recovery::new(settings, layout, seed);
+        let put = recovery.pose(&world, None)?;
         world.place(0, put.pose);
         // Noise would hide a blank image from the test.
         let mut quiet = Camera::new(&layout.scene, &CameraSettings { noise: 0.0, ..settings.camera.clone() }, seed);
@@ -90,8 +90,13 @@ impl Robot for SimulatedRobot {
     }
 
     fn recover(&mut self) -> Result<()> {
+        self.recover_after(Ended::default())
+    }
+
+    fn recover_after(&mut self, ended: Ended) -> Result<()> {
+        self.recovery.count(self.start, ended.good);
         self.world.begin_attempt();
-        let put = self.recovery.pose(&self.world)?;
+        let put = self.recovery.pose(&self.world, ended.to)?;
         self.world.place(0, put.pose);
         self.start = put.start;
         self.motion = Motion::default();
@@ -102,6 +107,10 @@ impl Robot for SimulatedRobot {
     fn whereabouts(&self) -> Option<Whereabouts> {
         let body = self.world.body(0);
         Some(Whereabouts { pose: body.pose, z_m: body.z_m })
+    }
+
+    fn starts_in_use(&self) -> usize {
+        self.recovery.starts_in_use()
     }
 
     fn start(&self) -> Option<usize> {

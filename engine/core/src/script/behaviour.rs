@@ -123,6 +123,12 @@ impl Behaviour {
         }
     }
 
+    /// Whether an attempt may end in a goal.
+    #[must_use]
+    pub(crate) fn has_goals(&self) -> bool {
+        self.endable.goal
+    }
+
     /// The name: the file's, without its ending.
     #[must_use]
     pub fn name(&self) -> &str {

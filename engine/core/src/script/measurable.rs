@@ -4,9 +4,13 @@ use super::behaviour::Behaviour;
 use crate::diagnostic::{Diagnostic, Mistakes, nearest_name, printable};
 use crate::verdict::{FigureUse, Probe};
 
-/// What a world has that figures are measured by.
+/// What a world has that a script can name, or be measured by.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Measurable<'a> {
+pub(crate) struct Nameable<'a> {
+    /// Its own name.
+    pub world: &'a str,
+    /// The names of its starts.
+    pub starts: &'a [&'a str],
     /// A route named `lap`.
     pub has_route: bool,
     /// The names of its movers.
@@ -19,7 +23,7 @@ pub(crate) struct Measurable<'a> {
     pub has_squares: bool,
 }
 
-impl Measurable<'_> {
+impl Nameable<'_> {
     /// Why a figure cannot be measured, and what to do; nothing if it can.
     fn missing(&self, asked: &FigureUse) -> Option<(String, String)> {
         let answer = |message: &str, help: &str| Some((message.to_owned(), help.to_owned()));
@@ -58,7 +62,7 @@ fn not_among(kind: &str, names: &[&str], name: &str) -> Option<(String, String)>
 
 impl Behaviour {
     /// Adds every condition of success that reads a figure which the world cannot give.
-    pub(crate) fn find_unmeasurable(&self, world: &Measurable<'_>, mistakes: &mut Mistakes) {
+    pub(crate) fn find_unmeasurable(&self, world: &Nameable<'_>, mistakes: &mut Mistakes) {
         for condition in self.conditions() {
             let missing = condition.term.figures().into_iter().find_map(|asked| world.missing(&asked));
             if let (Some((message, help)), Some(span)) = (missing, &condition.span) {

@@ -36,6 +36,7 @@ mod setup_table;
 mod setup_views;
 mod source;
 mod spoilt;
+mod starts;
 mod state_parts;
 mod stops;
 mod success;
@@ -50,7 +51,7 @@ mod words;
 
 pub use behaviour::Behaviour;
 pub(crate) use draft::Draft;
-pub(crate) use measurable::Measurable;
+pub(crate) use measurable::Nameable;
 pub use named_body::BodyFiles;
 pub use outline::{BeamLoop, Compared, Condition, Gathers, NamedFact, RuleOutline, ScriptOutline, UnusedName};
 pub(crate) use params::no_param;

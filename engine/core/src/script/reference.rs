@@ -84,6 +84,7 @@ fn figures() -> String {
         let of = match (figure.needs_route(), figure.takes(), figure.is_of_windows()) {
             (true, ..) => "a route",
             (false, Takes::Mover | Takes::MoverAndMetres, _) => "a mover",
+            (false, Takes::Place, _) => "a place",
             (false, _, true) => "a test, a window",
             (false, _, false) => "a test",
         };

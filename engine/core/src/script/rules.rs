@@ -94,6 +94,9 @@ fn compiled(
         value,
         value_span,
         then: written.then,
+        to_place: written
+            .to_place
+            .map(|(place, at)| (place.to_owned(), code.source.word_at(explain::offset(source, at)))),
         stages: stages?,
         once: written.once,
         per_second: written.per_second,

@@ -8,7 +8,7 @@ use super::unread::Unread;
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, printable};
 use crate::judge::explain;
 use crate::judge::views::number;
-use crate::settings::{self, CONDITION, PolicySettings, Settings, Value};
+use crate::settings::{self, CONDITION, PolicySettings, RecoverTo, Settings, Value};
 use rhai::{AST, ASTNode, Dynamic, Engine, Expr, FnCallExpr, Map, Position, Stmt};
 use std::any::TypeId;
 use std::cell::OnceCell;
@@ -175,6 +175,10 @@ impl SetupReader<'_> {
                 self.settings.stages = self.stages(stages)?;
                 self.mark("stages".to_owned(), self.call)
             }
+            ("starts", Some(names), options, None) if names.is_array() => {
+                self.settings.starts = self.starts(names, options, form)?;
+                self.mark("starts".to_owned(), self.call)
+            }
             ("policy", Some(policy), Some(path), None) if policy.is_string() && path.is_string() => {
                 let policy = PolicySettings { name: self.word(policy, form)?, path: self.word(path, form)? };
                 let place = format!("policy:{}", self.settings.policies.len());
@@ -191,12 +195,16 @@ impl SetupReader<'_> {
                     "recovery" => "to",
                     _ => "way",
                 };
-                let kind = self.word(kind, form)?;
+                let mut kind = self.word(kind, form)?;
+                if name == "recovery" && RecoverTo::of(&kind).is_none() {
+                    // The name of a start: whether the world has it is known later.
+                    self.settings.recovery.at = Some(std::mem::replace(&mut kind, RecoverTo::Start.word().to_owned()));
+                }
                 self.set_or_tell(name, key, &Value::Text(kind), self.call);
                 map.map_or(Ok(()), |map| self.group(name, map, form))
             }
             (group, Some(map), None, None)
-                if !matches!(group, "world" | "filter" | "view" | "actions" | "stages" | "policy") =>
+                if !matches!(group, "world" | "filter" | "view" | "actions" | "stages" | "starts" | "policy") =>
             {
                 self.group(group, map, form)
             }

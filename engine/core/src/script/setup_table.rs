@@ -44,6 +44,11 @@ pub(super) const SETUP: &[SetupCall] = &[
         "const near = param(0.25, #{ low: 0.15, high: 0.5, unit: \"m\" });",
         "A parameter: a constant that may be set from outside, within its range, as `--set near=0.3`.",
     ),
+    row(
+        "starts",
+        "starts([\"near\", \"far\"], #{ widen: 0.8 });",
+        "The world's starts that are used, by name. With `widen` the first alone, until of 20 attempts that share went well; then the next joins, and so on.",
+    ),
     row("run", "run(#{ steps: 5200 });", "The length and the rhythm of a run."),
     row(
         "robot",

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! rule "name" [in "stage", ...] when CONDITION [for N steps | for N seconds] [once] => VALUE [per second]
-//!             [then recover | fail | goal | restart | stage "name"];
+//!             [then recover | fail | goal | restart [to "place"]] [then stage "name"];
 //! success "name" when CONDITION;
 //! measure name = EXPRESSION;
 //! forbid "name" when CONDITION => CONDITION OF THE ACTION;
@@ -38,6 +38,8 @@ pub(super) struct WrittenRule<'a> {
     pub value: &'a Expr,
     pub per_second: bool,
     pub then: Option<Then>,
+    /// Where the next attempt begins.
+    pub to_place: Option<(&'a str, Position)>,
     /// The stage that it leads to.
     pub to_stage: Option<(&'a str, Position)>,
     /// How many top-level variables stand before it.
@@ -144,6 +146,8 @@ enum Read {
     Second,
     Then,
     ThenStage,
+    Outcome,
+    To,
     End,
 }
 
@@ -203,11 +207,18 @@ fn step(read: Read, ahead: &str) -> Result<Option<(&str, Read)>, &'static str> {
         Read::Per => return Err("a value is for one step, or 'per second'"),
         Read::Value | Read::Second if ahead == "then" => (ahead, Read::Then),
         Read::Then if ahead == "stage" => (ahead, Read::ThenStage),
-        Read::Then if Then::of(ahead).is_some() => (ahead, Read::End),
+        Read::Then if Then::of(ahead).is_some() => (ahead, Read::Outcome),
+        Read::Outcome if ahead == "to" => (ahead, Read::To),
+        Read::To if text => (TEXT, Read::End),
+        Read::To => {
+            return Err(
+                "after 'to' comes the name of a start in quotes, or \"nearest\", \"random\", \"start\", \"behind\"",
+            );
+        }
         Read::Then => return Err("after 'then' comes recover, fail, goal, restart, or stage \"name\""),
         Read::ThenStage if text => (TEXT, Read::End),
         Read::ThenStage => return Err("after 'then stage' comes the name of a stage in quotes"),
-        Read::Value | Read::Second | Read::End => return Ok(None),
+        Read::Value | Read::Second | Read::Outcome | Read::End => return Ok(None),
     }))
 }
 
@@ -303,7 +314,7 @@ pub(super) fn written_rules(statements: &[Stmt]) -> Vec<WrittenRule<'_>> {
 /// A rule from its words and what stands between them.
 fn read(custom: &CustomExpr, position: Position, variables: usize) -> Option<WrittenRule<'_>> {
     let mut inputs = custom.inputs.iter();
-    let (mut word, mut name, mut stages, mut to_stage) = ("rule", None, Vec::new(), None);
+    let (mut word, mut name, mut stages, mut to_stage, mut to_place) = ("rule", None, Vec::new(), None, None);
     let (mut condition, mut time, mut unit, mut value, mut then) = (None, None, TimeUnit::Steps, None, None);
     let (mut once, mut per_second) = (false, false);
     for token in custom.tokens.iter().skip(1) {
@@ -312,6 +323,7 @@ fn read(custom: &CustomExpr, position: Position, variables: usize) -> Option<Wri
                 let Expr::StringConstant(text, position) = inputs.next()? else { return None };
                 match word {
                     "in" | "," => stages.push((text.as_str(), *position)),
+                    "to" => to_place = Some((text.as_str(), *position)),
                     "stage" => to_stage = Some((text.as_str(), *position)),
                     _ => name = Some((text.as_str(), *position)),
                 }
@@ -349,6 +361,7 @@ fn read(custom: &CustomExpr, position: Position, variables: usize) -> Option<Wri
         value,
         per_second,
         then,
+        to_place,
         to_stage,
         variables,
     })

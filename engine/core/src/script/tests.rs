@@ -52,7 +52,7 @@ fn a_rule_fires_when_its_condition_holds() {
     assert_eq!(judge.judge().unwrap(), Judgement::default());
     assert_eq!(judge.fired(), [None]);
     judge.facts_mut().ranges_m[40] = 0.25;
-    assert_eq!(judge.judge().unwrap(), Judgement { reward: -1.0, then: Some(Then::Recover), stage: None });
+    assert_eq!(judge.judge().unwrap(), Judgement { reward: -1.0, then: Some(Then::Recover), ..Judgement::default() });
     assert_eq!(judge.fired(), [Some(-1.0)]);
 }
 
@@ -101,14 +101,14 @@ fn rules_add_up_until_one_recovers() {
         "rule \"a\" when true => 1; rule \"b\" when true => -3 then recover; rule \"c\" when true => 10;
          fn reward(facts) { 100 }",
     );
-    assert_eq!(judge.judge().unwrap(), Judgement { reward: -2.0, then: Some(Then::Recover), stage: None });
+    assert_eq!(judge.judge().unwrap(), Judgement { reward: -2.0, then: Some(Then::Recover), ..Judgement::default() });
     assert_eq!(judge.fired(), [Some(1.0), Some(-3.0), None, None]);
 }
 
 #[test]
 fn the_reward_function_adds_to_the_rules() {
     let mut judge = judge("rule \"a\" when true => 1; fn reward(facts) { facts.laser.right * 2 }");
-    assert_eq!(judge.judge().unwrap(), Judgement { reward: 5.0, then: None, stage: None });
+    assert_eq!(judge.judge().unwrap(), Judgement { reward: 5.0, then: None, ..Judgement::default() });
     assert_eq!(judge.fired(), [Some(1.0), Some(4.0)]);
 }
 
@@ -116,7 +116,7 @@ fn the_reward_function_adds_to_the_rules() {
 fn the_reward_function_may_ask_for_recovery() {
     let mut judge = judge("fn reward(facts) { #{ value: -1, recover: facts.robot.contact } }");
     judge.facts_mut().contact = true;
-    assert_eq!(judge.judge().unwrap(), Judgement { reward: -1.0, then: Some(Then::Recover), stage: None });
+    assert_eq!(judge.judge().unwrap(), Judgement { reward: -1.0, then: Some(Then::Recover), ..Judgement::default() });
 }
 
 #[test]

@@ -52,6 +52,8 @@ pub struct Settings {
     pub recovery: RecoverySettings,
     /// What drives by itself.
     pub movers: MoverSettings,
+    /// Where attempts begin.
+    pub starts: StartSettings,
     /// What the robot can be about, the first one first; empty for a behaviour without stages.
     pub stages: Vec<String>,
     /// Learned policies to combine, in the order of the script; empty for a behaviour that learns.
@@ -161,9 +163,20 @@ pub struct LearnerSettings {
 #[allow(missing_docs, reason = "every field is documented in the table of settings")]
 pub struct RecoverySettings {
     pub to: RecoverTo,
+    /// The name of a start: that one only, where `to` is a start.
+    pub at: Option<String>,
     pub distance_m: f64,
     pub position_m: f64,
     pub yaw_deg: f64,
+}
+
+/// Where attempts begin, of a script that lists its starts.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct StartSettings {
+    /// The names of the world's starts, in the order in which they join; empty for all.
+    pub names: Vec<String>,
+    /// Of twenty attempts, the share that must go well before the next start joins; nothing if all are used at once.
+    pub widen: Option<f64>,
 }
 
 /// What drives by itself.
@@ -280,8 +293,15 @@ impl Default for Settings {
                 mirror: false,
                 replay: 0,
             },
-            recovery: RecoverySettings { to: RecoverTo::Nearest, distance_m: 1.1, position_m: 0.1, yaw_deg: 8.6 },
+            recovery: RecoverySettings {
+                to: RecoverTo::Nearest,
+                at: None,
+                distance_m: 1.1,
+                position_m: 0.1,
+                yaw_deg: 8.6,
+            },
             movers: MoverSettings { speed: 1.0 },
+            starts: StartSettings::default(),
             stages: Vec::new(),
             policies: Vec::new(),
             combine: CombineSettings { way: CombineWay::Priority, margin: 0.5, scaled: false },

@@ -159,7 +159,8 @@ fn print(console: &mut Console, plan: &Plan, report: &StepReport) -> std::result
     if let Some([x_m, y_m, _]) = reasons.prey {
         console.line(&format!("prey:      x {x_m:.2} m, y {y_m:.2} m"))?;
     }
-    let after = if reasons.recover { ", then recovery" } else { "" };
+    let to = reasons.to.as_ref().map_or(String::new(), |to| format!(" to \"{}\"", printable(to)));
+    let after = if reasons.recover { format!(", then recovery{to}") } else { String::new() };
     console.line(&format!("reward:    {}{after}", short(reasons.reward)))?;
     for rule in reasons.rules.iter().filter(|rule| rule.added.is_some()) {
         console.line("")?;

@@ -1,7 +1,7 @@
 //! Figures of runs and tests, for people.
 
 use engine::diagnostic::printable;
-use engine::experiment::{CombinationFigures, MemberFigures, Plan, Spread, Summary};
+use engine::experiment::{CombinationFigures, MemberFigures, Plan, Spread, StartJoined, Summary};
 use engine::verdict::{BaseLines, Because, SuccessVerdict, TestFigures};
 use insight::verdict_words::{figures, headline, learned, spread_of_figures, tells_learning};
 
@@ -37,7 +37,19 @@ pub(super) fn print_one(console: &mut Console, plan: &Plan, summary: &Summary) -
         Some(combination) => print_combination(console, combination)?,
         None => console.line(&format!("learned:   {}", learned(tells_learning(plan), summary)))?,
     }
+    if !summary.starts.is_empty() {
+        console.line(&format!("starts:    {}", starts(&summary.starts)))?;
+    }
     print_figures(console, test, base_lines)
+}
+
+/// When each start came into use.
+fn starts(starts: &[StartJoined]) -> String {
+    let one = |start: &StartJoined| {
+        let when = start.joined_at.map_or("never joined".to_owned(), |step| format!("from step {step}"));
+        format!("\"{}\" {when}", printable(&start.name))
+    };
+    starts.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
 /// Whether a test is a success, and by which figures.

@@ -75,6 +75,13 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          The message has the nearest name that is; all of them are in scripts/README.md.",
     ),
     (
+        "E-SCRIPT-PLACE",
+        Kind::Input,
+        "The script names a place that the world does not have, behind 'to', in recovery(...) or in starts([...]); or it lists \
+         starts at which no attempt begins.\n\
+         A place is the name of a [[start]] of the world file, or one of \"nearest\", \"random\", \"start\", \"behind\".",
+    ),
+    (
         "E-SCRIPT-REWARD",
         Kind::Input,
         "fn reward or fn calibrate is not as it must be: each takes one argument, the facts; calibrate \

@@ -173,6 +173,7 @@ impl Ledger {
             next_state: step.next_state as u32,
             action: step.action as u16,
             then: step.then,
+            to: step.to,
             contact: step.contact,
             fallen: facts.fallen,
             explored: step.explored,

@@ -2,7 +2,8 @@
 
 use crate::experiment::Plan;
 use crate::geometry::Pose;
-use crate::outcome::{Ending, Then};
+use crate::outcome::{Destination, Ending, Then};
+use crate::settings::RecoverTo;
 
 /// Bytes of a record before the words of the rules.
 pub(super) const FIXED_BYTES: usize = 72;
@@ -27,6 +28,9 @@ const FIELDS: &[(usize, &str)] = &[
 const NO_BEAM: u16 = u16::MAX;
 /// Of the flags, the lower of the two bits that hold the word after `then`: its number in [`Then::ALL`].
 const THEN_BIT: u16 = 5;
+/// Of the flags, the lowest of those that hold where the next attempt begins: 0 as `recovery` says, then the words of recovery in
+/// their order, then the world's starts in theirs. A start beyond the last number is not told apart from 0.
+const TO_BIT: u16 = 7;
 
 /// One step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,6 +51,8 @@ pub struct Record {
     pub action: u16,
     /// What the script said if the attempt ended: the next step begins somewhere else.
     pub then: Option<Then>,
+    /// Where it does, if the script said so.
+    pub to: Option<Destination>,
     /// The body touched something.
     pub contact: bool,
     /// The robot lost its footing.
@@ -113,7 +119,7 @@ impl Record {
         let flags = [self.then.is_some(), self.contact, self.fallen, self.explored, self.prey.is_some()];
         let flags = flags.iter().enumerate().fold(0_u16, |set, (bit, flag)| set | u16::from(*flag) << bit);
         let word = Then::ALL.iter().position(|(_, then)| Some(*then) == self.then).unwrap_or(0) as u16;
-        let flags = flags | word << THEN_BIT;
+        let flags = flags | word << THEN_BIT | code(self.to) << TO_BIT;
         let mut bytes = [0; FIXED_BYTES];
         let wide = [self.reward, self.pose.x_m, self.pose.y_m, self.pose.yaw_rad].map(f64::to_le_bytes);
         bytes[0..32].copy_from_slice(wide.as_flattened());
@@ -143,6 +149,7 @@ impl Record {
             next_state: u32::from_le_bytes(states[1]),
             action,
             then: flag(0).then(|| Then::ALL[usize::from(flags >> THEN_BIT & 3)].1),
+            to: destination(flags >> TO_BIT),
             contact: flag(1),
             fallen: flag(2),
             explored: flag(3),
@@ -152,6 +159,21 @@ impl Record {
             coverage,
         }
     }
+}
+
+fn code(to: Option<Destination>) -> u16 {
+    let number = match to {
+        None => 0,
+        Some(Destination::Word(word)) => 1 + RecoverTo::ALL.iter().position(|own| *own == word).unwrap_or(0),
+        Some(Destination::Start(start)) => 1 + RecoverTo::ALL.len() + start,
+    };
+    if number >> (16 - TO_BIT) == 0 { number as u16 } else { 0 }
+}
+
+fn destination(code: u16) -> Option<Destination> {
+    let number = usize::from(code).checked_sub(1)?;
+    let word = RecoverTo::ALL.get(number).copied().map(Destination::Word);
+    Some(word.unwrap_or_else(|| Destination::Start(number - RecoverTo::ALL.len())))
 }
 
 /// The name of the field that the byte `at` of a record belongs to.

@@ -100,7 +100,7 @@ fn the_platform_script_sees_an_edge_beside_the_front_beam() {
     judge.calibrate().unwrap();
     assert_eq!(judge.judge().unwrap(), Judgement::default());
     judge.facts_mut().ranges_m[130] += 0.16;
-    assert_eq!(judge.judge().unwrap(), Judgement { reward: -1.0, then: Some(Then::Recover), stage: None });
+    assert_eq!(judge.judge().unwrap(), Judgement { reward: -1.0, then: Some(Then::Recover), ..Judgement::default() });
     judge.facts_mut().ranges_m[130] -= 0.16;
     judge.facts_mut().ranges_m[131] += 0.16;
     assert_eq!(judge.judge().unwrap(), Judgement::default());

@@ -16,6 +16,7 @@ use super::scene::Scene;
 use super::terrain::Terrain;
 use crate::diagnostic::{Diagnostic, Result, SourceText};
 use crate::geometry::Pose;
+use crate::outcome::Destination;
 use crate::settings::BodyShape;
 use std::io::Read;
 use std::path::Path;
@@ -71,6 +72,15 @@ impl Layout {
     #[must_use]
     pub fn driven_on(&self, body: &BodyShape) -> Vec<bool> {
         self.terrain.driven_on(&self.scene, body.step_m)
+    }
+
+    /// The name of a place where an attempt can begin.
+    #[must_use]
+    pub fn name_of(&self, destination: Destination) -> &str {
+        match destination {
+            Destination::Word(word) => word.word(),
+            Destination::Start(start) => self.starts.get(start).map_or("", |start| &start.name),
+        }
     }
 
     /// Reads a world from its text. `body` is the one that must be able to stand at every start.
