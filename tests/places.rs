@@ -9,6 +9,7 @@ use engine::outcome::Destination;
 use engine::robot::Robot;
 use engine::script::Behaviour;
 use engine::settings::RecoverTo;
+use engine::verdict::BaseLines;
 
 use crate::support::root;
 
@@ -107,7 +108,7 @@ fn starts_join_when_enough_attempts_went_well_and_the_summary_says_when() {
     // Twenty attempts of five steps for each.
     assert_eq!(learned.joined, [0, 100, 200, 300]);
     let tested = test(&plan, &learned.policy, 1, &AtomicBool::new(false)).unwrap();
-    let summary = Summary::new(&plan, 1, Some(&learned), &tested, &tested.figures);
+    let summary = Summary::new(&plan, 1, Some(&learned), &tested, &BaseLines::of_untrained(tested.figures.clone()));
     assert_eq!(summary.starts[3].name, "first platform");
     assert_eq!(summary.starts[3].joined_at, Some(300));
 }
