@@ -117,6 +117,8 @@ pub(super) fn first_fixed_difference(old: &Settings, new: &Settings) -> Option<(
         (old.world == new.world, "the world", "world"),
         (old.filters == new.filters, "the filters", "filter:0"),
         (old.actions == new.actions, "the actions", "actions"),
+        (old.starts == new.starts, "the starts", "starts"),
+        (old.recovery.at == new.recovery.at, "the start of recovery", "recovery.to"),
         (old.policies == new.policies, "the policies", "policy:0"),
     ];
     let part = || parts.into_iter().find(|(same, ..)| !same);
