@@ -48,7 +48,7 @@ fn a_rule_says_where_the_next_attempt_begins() {
     };
     assert_eq!(beginnings(&plan(&script("then restart")), 3), [8.6, 8.6, 8.6]);
     assert_eq!(beginnings(&plan(&script("then restart to \"middle\"")), 3), [8.6, 4.5, 4.5]);
-    assert!(beginnings(&plan(&script("then fail to \"start\"")), 9).iter().any(|x| *x == 0.0));
+    assert!(beginnings(&plan(&script("then fail to \"start\"")), 9).contains(&0.0));
 }
 
 #[test]
@@ -103,7 +103,7 @@ const WIDENED: &str = "world(\"bridge\"); recovery(\"start\"); run(#{ steps: 400
 fn starts_join_when_enough_attempts_went_well_and_the_summary_says_when() {
     let plan = plan(WIDENED);
     let found = beginnings(&plan, 80);
-    assert!(found[..21].iter().all(|x| (*x - 8.6).abs() < 0.2) && found[21..].iter().any(|x| *x < 7.0), "{found:?}");
+    assert!(found[..20].iter().all(|x| (*x - 8.6).abs() < 0.2) && found[20..40].iter().any(|x| *x < 7.0), "{found:?}");
     let learned = learn_into(&plan, 1, &AtomicBool::new(false), &|_| (), &mut Ledger::off()).unwrap();
     // Twenty attempts of five steps for each.
     assert_eq!(learned.joined, [0, 100, 200, 300]);

@@ -120,6 +120,8 @@ pub(super) fn first_fixed_difference(old: &Settings, new: &Settings) -> Option<(
         (old.view.name == new.view.name && old.further_views == new.further_views, "the views", "state"),
         (old.state == new.state, "the parts of the state", "state"),
         (old.actions == new.actions, "the actions", "actions"),
+        (old.starts == new.starts, "the starts", "starts"),
+        (old.recovery.at == new.recovery.at, "the start of recovery", "recovery.to"),
         (old.policies == new.policies, "the policies", "policy:0"),
     ];
     let part = || parts.into_iter().find(|(same, ..)| !same);

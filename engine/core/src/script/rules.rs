@@ -94,9 +94,7 @@ fn compiled(
         value,
         value_span,
         then: written.then,
-        to_place: written
-            .to_place
-            .map(|(place, at)| (place.to_owned(), code.source.word_at(explain::offset(source, at)))),
+        to_place: written.to_place.map(|(place, at)| (place.to_owned(), quoted(code, at))),
         stages: stages?,
         once: written.once,
         per_second: written.per_second,
@@ -106,6 +104,13 @@ fn compiled(
         },
         parts: parts(code, written.condition, compiler),
     })
+}
+
+/// The text in quotes that begins at a position, quotes included.
+fn quoted(code: &Code, at: Position) -> Range<usize> {
+    let from = explain::offset(&code.source, at);
+    let length = code.source.text[from..].bytes().skip(1).position(|byte| byte == b'"');
+    from..from + length.map_or(1, |length| length + 2)
 }
 
 /// The stages that a rule is for, as bits; nothing within if it is for all, nothing at all if one is not known.

@@ -71,7 +71,7 @@ impl Ground {
             way_m: world.way(mover).map(points),
         };
         let starts = layout.starts.iter().map(|start| [start.pose.x_m, start.pose.y_m]);
-        let ways = world.ways().chain(world.lap).flat_map(points);
+        let ways = world.ways().chain(world.lap).flat_map(points).chain(world.marks());
         Self {
             name: layout.name.clone(),
             bounds_m: bounds(&parts.solids, &starts.chain(ways).collect::<Vec<_>>()),

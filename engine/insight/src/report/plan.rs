@@ -78,6 +78,15 @@ impl<'a> WorldPlan<'a> {
         mover.way(self.routes).filter(|way| self.lap.is_none_or(|lap| !std::ptr::eq(lap, *way)))
     }
 
+    /// Points round all that is marked on the floor plan.
+    pub(crate) fn marks(&self) -> impl Iterator<Item = [f64; 2]> {
+        let circles = self.places.iter().flat_map(|place| {
+            let (x, y, radius_m) = (place.centre.x, place.centre.y, place.radius_m);
+            [[x - radius_m, y - radius_m], [x + radius_m, y + radius_m]]
+        });
+        circles.chain(self.gates.iter().flat_map(|gate| [gate.right, gate.left]).map(|post| [post.x, post.y]))
+    }
+
     /// Whether a mover drives along the lap.
     pub(super) fn lap_is_driven(&self) -> bool {
         self.movers.len() > self.ways().count()

@@ -82,7 +82,7 @@ impl FloorPlan {
             [[min.x, min.y], [max.x, max.y]]
         });
         let routes = world.ways().chain(world.lap).flat_map(Route::drawn).map(|at| [at.x, at.y]);
-        let all: Vec<[f64; 2]> = corners.chain(routes).chain(places).collect();
+        let all: Vec<[f64; 2]> = corners.chain(routes).chain(world.marks()).chain(places).collect();
         let (x, y) = (range(all.iter().map(|at| at[0])), range(all.iter().map(|at| at[1])));
         let border = 0.03 * (x.1 - x.0).max(y.1 - y.0);
         Self::showing((x.0 - border, x.1 + border), (y.0 - border, y.1 + border))
