@@ -217,14 +217,16 @@ function between(track, index, share, unit) {
   return mixed(track, track, index, apart ? 1 : share, unit);
 }
 
-/** The same of something that drives by itself, which no recovery moves. */
+/** Points round a circle. */
 function ring([x, y, radius]) {
   const turns = Array.from({ length: 49 }, (_, part) => (part * Math.PI) / 24);
   return turns.map((turn) => [x + radius * Math.cos(turn), y + radius * Math.sin(turn)]);
 }
 
+/** The same of something that drives by itself: recovery may have put it back to where it begins. */
 function moverPose(track, number, index, share, unit) {
-  return mixed(track, track.movers[number], index, share, unit);
+  const apart = index > 0 && (track.flags[index - 1] & RECOVER);
+  return mixed(track, track.movers[number], index, apart ? 1 : share, unit);
 }
 
 function mixed(track, poses, index, share, unit) {
