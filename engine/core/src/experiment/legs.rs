@@ -119,6 +119,7 @@ pub(super) fn first_fixed_difference(old: &Settings, new: &Settings) -> Option<(
         (old.view.filters == new.view.filters, "the filters", "filter:0"),
         (old.view.name == new.view.name && old.further_views == new.further_views, "the views", "state"),
         (old.state == new.state, "the parts of the state", "state"),
+        (old.stages == new.stages, "the stages", "stages"),
         (old.actions == new.actions, "the actions", "actions"),
         (old.starts == new.starts, "the starts", "starts"),
         (old.recovery.at == new.recovery.at, "the start of recovery", "recovery.to"),
