@@ -6,6 +6,7 @@
 mod body;
 mod body_file;
 mod body_keys;
+mod defaults;
 mod drive;
 mod fan;
 mod shipped_bodies;
@@ -195,24 +196,6 @@ pub struct CombineSettings {
     pub scaled: bool,
 }
 
-/// Table 2 of the paper: forward speed in m/s, turning speed in rad/s.
-const PAPER_ACTIONS: [(f64, f64); 14] = [
-    (0.4, 0.2),
-    (0.4, 0.0),
-    (0.4, -0.2),
-    (0.2, 0.8),
-    (0.2, 0.6),
-    (0.2, 0.4),
-    (0.2, 0.2),
-    (0.2, 0.0),
-    (0.2, -0.2),
-    (0.2, -0.4),
-    (0.2, -0.6),
-    (0.2, -0.8),
-    (0.05, 0.8),
-    (0.05, -0.8),
-];
-
 impl Settings {
     /// These settings, but where a script's own changed `from` one `to` another they change too.
     #[must_use]
@@ -234,77 +217,5 @@ impl Settings {
             self.actions.clone_from(&to.actions);
         }
         self
-    }
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            world: "room".to_owned(),
-            view: ViewSettings::named(UNNAMED_VIEW),
-            further_views: Vec::new(),
-            state: Vec::new(),
-            actions: PAPER_ACTIONS.iter().map(|&(linear, angular)| Twist::new(linear, angular)).collect(),
-            run: RunSettings { steps: 5_200, test_steps: 5_000, period_s: 0.5 },
-            robot: RobotSettings {
-                body: BodyShape::pioneer2at(),
-                drive: DriveLimits::default(),
-                lag_s: 0.15,
-                speed_noise: 0.05,
-                slip: 0.0,
-                tick_s: 0.05,
-            },
-            // 53 cm above the robot's deck (paper, section 4.1) with the deck at 0.28 m.
-            camera: CameraSettings {
-                width_px: 160,
-                height_px: 120,
-                field_of_view_deg: 80.0,
-                lens: Lens::Pinhole,
-                forward_m: 0.10,
-                height_m: 0.81,
-                tilt_deg: 42.0,
-                noise: 2.0,
-                own_body: false,
-            },
-            // Range limits of the SICK LMS 200 in Gazebo 0.7, the simulator of the paper's time.
-            laser: LaserSettings {
-                beams: 181,
-                field_of_view_deg: 180.0,
-                forward_m: 0.18,
-                height_m: 0.38,
-                tilt_deg: 0.0,
-                min_range_m: 0.20,
-                max_range_m: 8.192,
-                noise_m: 0.005,
-            },
-            ground: GroundSettings { ahead_m: 0.1, aside_m: 0.15 },
-            learner: LearnerSettings {
-                kind: LearnerKind::Ttd,
-                step_size: 0.2,
-                discount: 0.99,
-                trace_decay: 0.9,
-                window: 3,
-                temperature: 0.07,
-                temperature_end: 0.009,
-                cooling_visits: 500,
-                initial_low: -1.0,
-                initial_high: -0.9,
-                failure_is_terminal: false,
-                mirror: false,
-                replay: 0,
-            },
-            recovery: RecoverySettings {
-                to: RecoverTo::Nearest,
-                at: None,
-                distance_m: 1.1,
-                position_m: 0.1,
-                yaw_deg: 8.6,
-            },
-            movers: MoverSettings { speed: 1.0 },
-            starts: StartSettings::default(),
-            stages: Vec::new(),
-            policies: Vec::new(),
-            combine: CombineSettings { way: CombineWay::Priority, margin: 0.5, scaled: false },
-        }
     }
 }
