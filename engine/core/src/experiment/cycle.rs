@@ -193,7 +193,7 @@ impl<R: Robot> Cycle<R> {
         self.judge.guarding().instead_of(action, self.leave.allowed)
     }
 
-    /// The same, with the guards that hold.
+    /// Which actions may be taken now, and which guards hold.
     pub(super) fn leave(&self) -> Leave {
         self.leave
     }

@@ -58,7 +58,7 @@ impl Eyes {
         Self { chains, grids, map, names, looks, finder: PatchFinder::default(), rays, width_px, height_px }
     }
 
-    /// The same eyes with another map.
+    /// These eyes with another map from what is seen to states.
     #[must_use]
     pub(super) fn with_map(self, map: Box<dyn StateMap>) -> Self {
         Self { map, ..self }

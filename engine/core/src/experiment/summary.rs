@@ -35,7 +35,7 @@ pub struct Summary {
     pub verdict: SuccessVerdict,
     /// The frozen policy's test.
     pub test: TestFigures,
-    /// The same test of robots that know nothing, or do not look.
+    /// The test of robots that know nothing, or do not look, over as many steps.
     #[serde(flatten)]
     pub base_lines: BaseLines,
     /// SHA-256 over every step of learning and the learned table.

@@ -1,5 +1,7 @@
 //! A filter that can be used, and how it comes into the program.
 
+#[cfg(feature = "native-filters")]
+use std::path::Path;
 use std::path::PathBuf;
 
 use filter_api::Descriptor;
@@ -49,6 +51,13 @@ pub struct Entry {
 }
 
 impl Entry {
+    /// A filter of a native library with this digest.
+    #[cfg(feature = "native-filters")]
+    pub(super) fn native(descriptor: &'static Descriptor, path: &Path, sha256: String, create: Create) -> Self {
+        let (path, sha256) = (Some(path.to_owned()), Some(sha256));
+        Self { descriptor, form: Form::Native, path, sha256, by_condition: false, create }
+    }
+
     /// An instance with one value for each parameter, each within its range; whether it keeps the law is not tried.
     ///
     /// # Errors

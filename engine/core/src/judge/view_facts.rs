@@ -36,7 +36,7 @@ pub struct PatchFacts {
     pub offset: f64,
     /// The bearing of its leftmost place at the height of its centre, degrees; 180 if none is seen.
     pub left_deg: f64,
-    /// The same of its rightmost place.
+    /// The bearing of its rightmost place at the height of its centre, degrees; 180 if none is seen.
     pub right_deg: f64,
     /// Distance from the robot's centre to its lowest place on flat floor, metres; 100 if none is seen there.
     pub floor_m: f64,
@@ -97,7 +97,7 @@ impl ViewFacts {
         self.share((from, to), (0, self.grid.1.saturating_sub(1)))
     }
 
-    /// The same of neighbouring columns.
+    /// The share of foreground pixels of neighbouring columns, both included, 0 to 1; 0 if there are none.
     #[must_use]
     pub(crate) fn columns(&self, from: usize, to: usize) -> f64 {
         self.share((0, self.grid.0.saturating_sub(1)), (from, to))

@@ -37,8 +37,8 @@ pub trait Robot {
     /// If there is no safe pose.
     fn recover(&mut self) -> Result<()>;
 
-    /// The same after an attempt about which something may be known: where the next one is to begin. A robot that cannot tell
-    /// places apart goes to the usual one.
+    /// Goes, or is put, to a safe pose after an attempt about which something may be known: where the next one is to begin. A
+    /// robot that cannot tell places apart goes to the usual one.
     ///
     /// # Errors
     /// As [`Robot::recover`].

@@ -170,7 +170,7 @@ fn at_start(layout: &Layout, start: usize) -> Put {
     Put { pose: layout.starts[start].pose, start: Some(start) }
 }
 
-/// The same place, looking the other way.
+/// A pose turned about by 180 degrees where it stands.
 fn turned(pose: Pose) -> Pose {
     Pose::new(pose.x_m, pose.y_m, pose.yaw_rad + std::f64::consts::PI)
 }

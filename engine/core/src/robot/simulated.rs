@@ -7,7 +7,7 @@ use crate::diagnostic::Result;
 use crate::geometry::{Pose, Twist};
 use crate::sensors::observation::{Image, Observation};
 use crate::sensors::{Camera, CameraWatch, GroundSensors, Laser, self_test};
-use crate::settings::{CameraSettings, Settings};
+use crate::settings::{CameraSettings, GroundSettings, Settings};
 use crate::world::scene::Solid;
 use crate::world::{Layout, Motion, World};
 
@@ -16,7 +16,9 @@ pub struct SimulatedRobot {
     world: World,
     camera: Camera,
     laser: Laser,
-    ground: GroundSensors,
+    ground_at: GroundSettings,
+    /// Made when somebody first asks for the ground.
+    ground: Option<GroundSensors>,
     watch: CameraWatch,
     recovery: Recovery,
     motion: Motion,
@@ -37,7 +39,6 @@ impl SimulatedRobot {
             .with_mover_speed(settings.movers.speed);
         let camera = Camera::new(&layout.scene, &settings.camera, seed);
         let laser = Laser::new(&layout.scene, &settings.laser, seed);
-        let ground = GroundSensors::new(&layout.scene, &settings.ground);
         let mut recovery = Recovery::new(settings, layout, seed);
         let put = recovery.pose(&world, None)?;
         world.place(0, put.pose);
@@ -46,8 +47,8 @@ impl SimulatedRobot {
         let mut own = settings.camera.own_body.then(|| Vec::with_capacity(world.seen_by(0).len() + 1));
         self_test(&mut quiet, &world.body(0).world_from_robot(), in_view(&world, &mut own))?;
         let (watch, motion) = (CameraWatch::new(), Motion::default());
-        let start = put.start;
-        Ok(Self { world, camera, laser, ground, watch, recovery, motion, moved: false, own, start })
+        let (start, ground_at, ground) = (put.start, settings.ground.clone(), None);
+        Ok(Self { world, camera, laser, ground_at, ground, watch, recovery, motion, moved: false, own, start })
     }
 
     /// The truth, for tests and reports only.
@@ -74,7 +75,9 @@ impl Robot for SimulatedRobot {
         self.watch.check(&observation.image, self.moved)?;
         self.laser.scan(&world_from_robot, self.world.seen_by(0), &mut observation.scan);
         if let Some(colours) = &mut observation.ground {
-            *colours = self.ground.read(&world_from_robot);
+            let scene = &self.world.layout().scene;
+            let ground = self.ground.get_or_insert_with(|| GroundSensors::new(scene, &self.ground_at));
+            *colours = ground.read(&world_from_robot);
         }
         observation.contact = self.motion.contact;
         observation.fallen = self.motion.fallen;

@@ -36,7 +36,7 @@ pub struct TestFigures {
     pub route_offset_m: Option<f64>,
     /// Progress along the route in either direction, without a route the path, over failures + 1, metres.
     pub metres_per_failure: f64,
-    /// The same over failures + restarts + 1, metres.
+    /// Progress along the route in either direction, without a route the path, over failures + restarts + 1, metres.
     #[serde(default)]
     pub metres_per_intervention: f64,
     /// Steps in which the body touched something.

@@ -81,7 +81,7 @@ impl Route {
         Pose::new(segment.from.x + rest * x, segment.from.y + rest * y, segment.yaw_rad)
     }
 
-    /// The same place as a distance within the route's length.
+    /// A distance along the route brought within its length, metres.
     #[must_use]
     pub(super) fn within(&self, along_m: f64) -> f64 {
         if self.closed {

@@ -205,22 +205,21 @@ impl StoredRun {
             let bodies = |_: &str| Ok(body.clone());
             Behaviour::parse_with(&file.behaviour, script.check(&source)?, &bodies, params).map(Arc::new)
         };
-        let shape = behaviour_of(&file.script, &file.params)?.settings().robot.body;
-        let layout = Arc::new(Layout::parse(file.world.check(&source)?, &shape)?);
+        let behaviour = behaviour_of(&file.script, &file.params)?;
+        let layout = Arc::new(Layout::parse(file.world.check(&source)?, &behaviour.settings().robot.body)?);
         let further = file.view.iter().flat_map(|view| &view.filter);
         file.filters.iter().chain(further).try_for_each(|filter| filter.check(&filters))?;
-        let plan_of = |script: &TextEntry, table: &Table, params: &ParamValues| {
-            let behaviour = behaviour_of(script, params)?;
+        let plan_of = |behaviour: Arc<Behaviour>, table: &Table| {
             let settings = settings(&source, behaviour.settings(), &file, table)?;
             Plan::with_layout(behaviour, settings, Arc::clone(&layout), Arc::clone(&filters))
         };
-        let plan = plan_of(&file.script, &file.settings, &file.params)?;
+        let plan = plan_of(behaviour, &file.settings)?;
         let leg = |leg: &LegEntry| {
             if leg.steps > MOST_LEG_STEPS {
                 let message = format!("'{}' has a leg of {} steps", source.path.display(), leg.steps);
                 return Diagnostic::new("E-RUN-FILE", message).help("run the behaviour again").fail();
             }
-            let earlier = plan_of(&leg.script, &leg.settings, &leg.params)?;
+            let earlier = plan_of(behaviour_of(&leg.script, &leg.params)?, &leg.settings)?;
             match plan.differs_beyond_reward(&earlier) {
                 None => Ok(Leg { plan: earlier, steps: leg.steps, then: leg.table }),
                 Some(what) => Err(Box::new(not_one_run(&source, &what))),

@@ -19,7 +19,7 @@ use crate::diagnostic::{Diagnostic, Result, printable};
 use crate::filter::described::{
     DescribedFilter, DescribedParameter, LONGEST_TEXT_BYTES, MOST_PARAMETERS, check_frames,
 };
-use crate::filter::entry::{Entry, Form};
+use crate::filter::entry::Entry;
 use crate::filter::running::{Running, failed, refused};
 use crate::filter::trust::Trust;
 
@@ -38,15 +38,7 @@ pub(super) fn open(path: &Path, trust: &Trust) -> Result<Entry> {
         })?;
         Ok(Box::new(InProcess { descriptor, native }))
     };
-    let create = Box::new(create);
-    Ok(Entry {
-        descriptor,
-        form: Form::Native,
-        path: Some(path.to_owned()),
-        sha256: Some(sha256),
-        by_condition: false,
-        create,
-    })
+    Ok(Entry::native(descriptor, path, sha256, Box::new(create)))
 }
 
 /// A plugin of a library, which stays loaded until the program ends.

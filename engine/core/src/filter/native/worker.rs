@@ -14,7 +14,7 @@ use super::wire::{self, Reply, Request, read_reply, write_reply, write_request};
 use super::{library, loaded};
 use crate::diagnostic::{Diagnostic, Result, printable};
 use crate::filter::described::{DescribedFilter, check_frames};
-use crate::filter::entry::{Entry, Form};
+use crate::filter::entry::Entry;
 use crate::filter::running::{Running, failed, refused};
 use crate::filter::trust::Trust;
 
@@ -38,15 +38,7 @@ pub(super) fn open(path: &Path, trust: &Trust, program: &Path) -> Result<Entry> 
         let worker = launch.create(name, values)?;
         Ok(Box::new(Isolated { descriptor, launch: launch.clone(), values: values.to_vec(), worker, frames: 0 }))
     };
-    let create = Box::new(create);
-    Ok(Entry {
-        descriptor,
-        form: Form::Native,
-        path: Some(path.to_owned()),
-        sha256: Some(sha256),
-        by_condition: false,
-        create,
-    })
+    Ok(Entry::native(descriptor, path, sha256, Box::new(create)))
 }
 
 /// How to start a worker for one library.
