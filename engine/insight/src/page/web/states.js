@@ -58,8 +58,8 @@ class States {
         onclick: () => this.onPick(row.state),
       }, stateIcon(doc, row, last),
       el('span', { class: 'number', text: `no. ${row.state}` }),
-      // The last part is the stage.
-      ...(row.text ? [el('span', { class: 'stage', text: row.text.split(' | ').pop().replace('stage ', '').replaceAll('"', '') })] : []),
+      // What else the state holds.
+      ...words(row.text).map((text) => el('span', { class: 'stage', text })),
       el('span', { text: row.value.toFixed(2).replace('-', '−') }),
       el('span', { text: `${whole(row.visits)} ×` }));
       this.buttons.set(row.state, button);
@@ -79,4 +79,12 @@ class States {
     this.buttons.get(state)?.classList.add('now');
     this.now = state;
   }
+}
+
+/** What a state of several parts holds besides the cells that are drawn, briefly: `0.6 to 1.2`, `search`, `white 0 2 1`. */
+function words(text) {
+  const parts = text.split(' | ');
+  const others = text && !parts[0].includes('columns ') ? parts : parts.slice(1);
+  const brief = (part) => part.match(/(below \S+|\S+ to \S+|from \S+|no|yes)$/)?.[0] ?? part.replace('columns ', '');
+  return others.map((part) => (part.startsWith('stage ') ? part.slice(6).replaceAll('"', '') : brief(part)));
 }
