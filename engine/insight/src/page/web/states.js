@@ -83,8 +83,9 @@ class States {
 
 /** What a state of several parts holds besides the cells that are drawn, briefly: `0.6 to 1.2`, `search`, `white 0 2 1`. */
 function words(text) {
+  if (!text) return [];
   const parts = text.split(' | ');
-  const others = text && !parts[0].includes('columns ') ? parts : parts.slice(1);
+  const others = !parts[0].includes('columns ') ? parts : parts.slice(1);
   const brief = (part) => part.match(/(below \S+|\S+ to \S+|from \S+|no|yes)$/)?.[0] ?? part.replace('columns ', '');
   return others.map((part) => (part.startsWith('stage ') ? part.slice(6).replaceAll('"', '') : brief(part)));
 }
