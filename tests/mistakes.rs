@@ -1,7 +1,11 @@
+use std::sync::Arc;
+
+use engine::experiment::{Overrides, Plan};
+use engine::script::Behaviour;
 use insta::assert_snapshot;
 use serde_json::Value;
 
-use crate::support::{Bench, WORLD};
+use crate::support::{Bench, WORLD, root};
 
 /// Mistakes that are found while the script is read, while it is tried, in its filters, and in its world.
 const SCRIPT: &str = r#"world("small");
@@ -86,4 +90,33 @@ rule \"close\" when laser.nearest < 0.25 => -1;\n";
     let error: Value = serde_json::from_slice(&bench.engine(&["run", "mine.rhai", "--json"]).stderr).unwrap();
     let lines: Vec<u64> = told(&error).iter().map(|(line, _)| *line).collect();
     assert_eq!(lines, [1, 3, 3, 5, 6], "{error}");
+}
+
+/// Each script of the corpus with its name.
+fn seeded() -> Vec<(String, String)> {
+    let corpus = std::fs::read_to_string(root().join("tests/fixtures/mistakes.rhai")).unwrap();
+    let each = corpus.split("\n//// ").skip(1).map(|one| one.split_once('\n').unwrap());
+    each.map(|(name, text)| (name.to_owned(), text.to_owned())).collect()
+}
+
+#[test]
+fn every_seeded_mistake_is_told_at_load_in_its_line_with_the_way_out() {
+    let bench = Bench::new();
+    bench.write("worlds/object.toml", std::fs::read(root().join("worlds/object.toml")).unwrap());
+    let seeded = seeded();
+    assert!(seeded.len() >= 60, "{}", seeded.len());
+    let mut said = String::new();
+    for (name, text) in seeded {
+        bench.write("mine.rhai", &text);
+        let error = Behaviour::load(&bench.path().join("mine.rhai"))
+            .and_then(|behaviour| Plan::new(Arc::new(behaviour), &Overrides::default()).map(drop))
+            .expect_err(&name);
+        let place = error.place.as_ref().unwrap();
+        let (line, _) = place.source.position(place.span.start);
+        let marked = 1 + text.lines().position(|line| line.ends_with("// <-")).unwrap();
+        assert_eq!((line, error.others.len()), (marked, 0), "{name}: {error:?}");
+        let help = error.help.as_deref().unwrap_or_default();
+        said += &format!("{name}: {} {} | {help}\n", error.code, error.message);
+    }
+    assert_snapshot!("seeded_mistakes", said);
 }

@@ -99,6 +99,9 @@ pub(crate) fn unknown_fact(
         return only_the_simulator_knows(source, offset(source, position), key, help);
     }
     let other = OTHER_NAMES.iter().find(|(wrong, right)| *wrong == key && names.contains(right)).map(|row| row.1);
+    // `bearing` for `bearing_deg`.
+    let whole = names.iter().find(|name| name.strip_prefix(key).is_some_and(|rest| rest.starts_with('_'))).copied();
+    let near = near.or(whole);
     let setting = setting_of(group, key);
     if let Some((key, default)) = setting.as_ref().filter(|_| near.or(other).is_none()) {
         let message = format!("'{group}.{key}' is a setting: a rule cannot read it");

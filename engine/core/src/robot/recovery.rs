@@ -38,10 +38,9 @@ impl Recovery {
         let Settings { recovery, starts, .. } = settings;
         let number = |name: &String| layout.starts.iter().position(|start| start.name == *name);
         let named = recovery.at.as_ref().filter(|_| recovery.to == RecoverTo::Start).and_then(number);
-        let listed: Vec<usize> = match starts.names.as_slice() {
-            [] => (0..layout.starts.len()).collect(),
-            names => names.iter().filter_map(number).collect(),
-        };
+        let listed: Vec<usize> = starts.names.iter().filter_map(number).collect();
+        // A list without any start of this world is a mistake of its own, and has been told.
+        let listed = if listed.is_empty() { (0..layout.starts.len()).collect() } else { listed };
         Self {
             settings: recovery.clone(),
             usual: named.map_or(Destination::Word(recovery.to), Destination::Start),

@@ -40,7 +40,12 @@ pub(super) fn next_of_forbid(symbols: &[ImmutableString], ahead: &str, _: &mut D
         4 if matches!(ahead, "for" | "once" | "in") => {
             wrong("a guard holds as long as its condition does: it has no 'for', 'once' or 'in'")
         }
-        4 => expect("=>", ahead, "after the condition comes '=>' and what no action may be: action.linear > 0"),
+        4 => expect(
+            "=>",
+            ahead,
+            "after the condition comes '=>' and what no action may be: \
+             forbid \"ahead\" when laser.front < 0.4 => action.linear > 0",
+        ),
         5 if is_end => wrong("after '=>' comes what no action may be: action.linear > 0"),
         5 => Ok(Some("$expr$".into())),
         _ if matches!(ahead, "then" | "per") => wrong("a guard has no value and ends nothing: that is a rule's"),

@@ -28,7 +28,7 @@ pub(super) fn measures(
 ) {
     let written = written_measures(ast.statements());
     let mut known: Vec<&str> = Vec::new();
-    for measure in &written {
+    for (number, measure) in written.iter().enumerate() {
         let count = mistakes.count();
         if let Some(wrong) = misnamed(code, measure, &known, variables) {
             mistakes.add(wrong);
@@ -37,6 +37,12 @@ pub(super) fn measures(
             }
         }
         known.push(measure.name);
+        let later = written[number + 1..].iter().find(|later| reads(measure.expression, later.name));
+        if let Some(later) = later.filter(|later| !known.contains(&later.name)) {
+            mistakes.add(reads_a_later_one(code, measure, later));
+            spoilt.insert(measure.name);
+            continue;
+        }
         let bytes = span(code, measure.expression);
         if spoilt.touches(&bytes, mistakes) {
             spoilt.insert(measure.name);
@@ -91,6 +97,13 @@ fn misnamed(code: &Code, measure: &WrittenMeasure<'_>, known: &[&str], variables
     } else {
         "choose another name"
     }))
+}
+
+fn reads_a_later_one(code: &Code, measure: &WrittenMeasure<'_>, later: &WrittenMeasure<'_>) -> Diagnostic {
+    let message = format!("measure '{}' reads '{}', which is worked out after it", measure.name, later.name);
+    let at = first(measure.expression);
+    let wrong = explain::mistake(&code.source, "E-SCRIPT-WINDOW", at, message, "reads what stands below");
+    wrong.help(format!("move measure '{}' above measure '{}'", later.name, measure.name))
 }
 
 /// Whether an expression names a variable.

@@ -237,12 +237,12 @@ impl Names<'_> {
         }
         let is_group = self.is_group(root) && !self.code.defines(root) || self.measures.iter().any(|name| name == root);
         if !is_group && !matches!(root, "facts" | "calibrated") {
-            if matches!(root, "test" | "untrained") && self.figures {
+            let defined = self.variables.as_ref().is_none_or(|known| known.contains(root)) || self.spoilt.has(root);
+            if matches!(root, "test" | "untrained") && (self.figures || !defined) {
                 let message = format!("'{root}' can be read only in a success: nothing is tested yet");
                 let help = "success \"name\" when test.failures_per_1000 <= 2;";
                 return self.mistake("E-SCRIPT-SUCCESS", position, message, "read too early", help);
             }
-            let defined = self.variables.as_ref().is_none_or(|known| known.contains(root)) || self.spoilt.has(root);
             if !defined && !self.own.iter().any(|(name, _)| name == root) {
                 self.unknown.variable(root, explain::offset(&self.code.source, position));
             }
@@ -258,7 +258,13 @@ impl Names<'_> {
             self.mistake("E-SCRIPT-FACT", position, message, "not known here", help);
         } else if !in_rule {
             let message = format!("'{root}' can be read only in rules and functions: nothing is measured yet");
-            self.mistake("E-SCRIPT-FACT", position, message, "read too early", "move it into a rule");
+            self.mistake(
+                "E-SCRIPT-FACT",
+                position,
+                message,
+                "read too early",
+                "move it into a rule, or name it by a measure: measure gap = laser.front;",
+            );
         } else if root == "calibrated" && !self.calibrates {
             let message = "there is no 'fn calibrate', so nothing is calibrated".to_owned();
             self.mistake("E-SCRIPT-FACT", position, message, "not known", "write fn calibrate(facts) { ... }");

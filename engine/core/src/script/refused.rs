@@ -5,7 +5,7 @@ use super::syntax::OURS;
 use super::words::foreign_word;
 use crate::diagnostic::{Diagnostic, SourceText, nearest_name, printable};
 use crate::judge::explain::{limit, lower, mistake, mistake_at, offset, unknown_name};
-use crate::judge::functions::FUNCTIONS;
+use crate::judge::functions::{FUNCTIONS, WINDOWS};
 use crate::judge::sandbox;
 use rhai::{LexError, ParseError, ParseErrorType, Position};
 
@@ -110,12 +110,15 @@ fn most_of(kind: &ParseErrorType) -> Option<String> {
 
 /// A function that does not exist, with the nearest that does.
 pub(super) fn unknown_function_at(source: &SourceText, at: usize, name: &str, own: &[String]) -> Diagnostic {
-    let known = FUNCTIONS.iter().map(|row| row.name).chain(SETUP.iter().map(|row| row.name));
+    let known = FUNCTIONS.iter().chain(WINDOWS).map(|row| row.name).chain(SETUP.iter().map(|row| row.name));
     let near = nearest_name(name, known.chain(own.iter().map(String::as_str)));
     let message = format!("there is no function '{}' in a script", printable(name));
     let diagnostic = mistake_at(source, "E-SCRIPT-NAME", at, message, "not known");
     match (near, name) {
         (Some(near), _) => diagnostic.help(format!("did you mean '{near}'?")),
+        (None, "bins") => {
+            diagnostic.help("it stands inside state(...): state(\"camera\", bins(laser.front, [0.5, 1.0]));")
+        }
         (None, "print" | "debug") => diagnostic.help("`engine check` shows the facts and the rules that fire"),
         (None, _) => {
             let names: Vec<_> = FUNCTIONS.iter().map(|row| row.name).collect();

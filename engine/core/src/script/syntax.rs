@@ -190,6 +190,7 @@ fn step(read: Read, ahead: &str) -> Result<Option<(&str, Read)>, &'static str> {
         Read::Condition if matches!(ahead, "in" | "per" | "then") => {
             return Err("the order of a rule is: in, when, for, once, =>, per second, then");
         }
+        Read::Condition if ahead == "," => return Err("conditions are joined with '&&' (and) or '||' (or)"),
         Read::Condition => {
             return Err("after the condition comes 'for N steps', 'for N seconds', or '=>' and a value");
         }
@@ -218,6 +219,10 @@ fn step(read: Read, ahead: &str) -> Result<Option<(&str, Read)>, &'static str> {
         Read::Then => return Err("after 'then' comes recover, fail, goal, restart, or stage \"name\""),
         Read::ThenStage if text => (TEXT, Read::End),
         Read::ThenStage => return Err("after 'then stage' comes the name of a stage in quotes"),
+        Read::Value | Read::Second if ahead == "to" => {
+            return Err("'to' stands behind what ends the attempt: then fail to \"nearest\"");
+        }
+        Read::Outcome | Read::End if ahead == "then" => return Err("a rule has one 'then': write a second rule"),
         Read::Value | Read::Second | Read::Outcome | Read::End => return Ok(None),
     }))
 }

@@ -8,7 +8,7 @@ use super::syntax::{is_success_expr, written_measures};
 use crate::diagnostic::{Diagnostic, Mistakes};
 use crate::judge::explain::offset;
 use crate::judge::expression::{Arithmetic, Comparison};
-use crate::judge::fact_table::Fact;
+use crate::judge::fact_table::{Fact, names_in};
 use crate::judge::functions::{FUNCTIONS, OF_ONE, OF_ONE_FRACTION};
 use rhai::{AST, ASTFlags, ASTNode, Expr, FnCallExpr, Position, Stmt};
 
@@ -67,13 +67,36 @@ fn named(ast: &AST, checker: &TypeChecker<'_>) -> Vec<(String, Kind)> {
     constants.chain(measures).collect()
 }
 
+/// What an operator is applied to.
+fn operands(expr: &Expr) -> &[Expr] {
+    match expr {
+        Expr::And(parts, _) | Expr::Or(parts, _) => parts,
+        Expr::FnCall(call, _) if call.is_operator_call() => &call.args,
+        _ => &[],
+    }
+}
+
 impl TypeChecker<'_> {
     /// What is wrong with an expression itself, whatever is in it.
     fn wrong(&self, expr: &Expr) -> Option<Diagnostic> {
+        if let Some(wrong) = operands(expr).iter().find_map(|operand| self.bare_group(operand)) {
+            return Some(wrong);
+        }
         match expr {
             Expr::And(parts, _) | Expr::Or(parts, _) => {
                 let number = parts.iter().find(|part| self.kind(part) == Some(Kind::Number))?;
                 Some(self.no_flag(number))
+            }
+            // `robot.contact in "search"`: Rhai's own word for a part of a text.
+            Expr::FnCall(call, position)
+                if call.name == "contains"
+                    && matches!(call.args.as_slice(), [Expr::StringConstant(..), _])
+                    && self.code.source.text[offset(&self.code.source, *position)..].starts_with("in ") =>
+            {
+                let at = offset(&self.code.source, *position);
+                let message = "the order of a rule is: in, when, for, once, =>, per second, then";
+                let wrong = Diagnostic::new("E-SCRIPT-RULE", message).at(&self.code.source, at..at + 2, "not here");
+                Some(wrong.help("write the stages before 'when': rule \"found\" in \"search\" when ..."))
             }
             Expr::FnCall(call, position) => match call.args.as_slice() {
                 [of] if call.name == "!" && self.kind(of) == Some(Kind::Number) => Some(self.no_flag(of)),
@@ -91,6 +114,28 @@ impl TypeChecker<'_> {
             },
             _ => None,
         }
+    }
+
+    /// A group of facts in the place of a value; the laser alone is its nearest range.
+    fn bare_group(&self, operand: &Expr) -> Option<Diagnostic> {
+        let access = Access::of(operand)?;
+        let by_argument = self.facts.contains(&access.root);
+        let (group, links) = if by_argument { access.group_of_facts()? } else { access.group()? };
+        let own = access.is_local && !by_argument || self.code.defines(group) && !by_argument;
+        let known = self.code.views.group_of(group).filter(|_| links.is_empty() && !own)?;
+        if fact_of(known, links).is_some() {
+            return None;
+        }
+        let (start, end) = (self.start(operand), self.end(operand));
+        let help = match known {
+            "stage" => "ask for a stage by its name: stage.at(\"search\")".to_owned(),
+            "previous" => "write previous.laser.front".to_owned(),
+            _ => {
+                let facts: Vec<String> = names_in(known).iter().take(3).map(|fact| format!("{group}.{fact}")).collect();
+                format!("name one of its facts, such as {}", facts.join(", "))
+            }
+        };
+        Some(self.mistake(format!("'{group}' is a group of facts, and no value"), start..end, "no value", help))
     }
 
     fn compared(

@@ -39,11 +39,12 @@ impl Unknown {
         let mut places: Vec<_> = places.into_iter().map(|(name, places)| (places, name)).collect();
         places.sort_unstable();
         let source = &code.source;
+        let known: Vec<String> = variables.iter().cloned().chain(code.views.all()).collect();
         let mut once = BTreeSet::new();
         for (places, (is_function, name)) in places {
             let told = |at: usize| match is_function {
                 true => unknown_function_at(source, at, &name, functions),
-                false => explain::unknown_name_at(source, at, &name, variables),
+                false => explain::unknown_name_at(source, at, &name, &known),
             };
             let first = if mistakes.wants(source, places[0]) { Some(told(places[0])) } else { None };
             match first {

@@ -57,6 +57,8 @@ const RESERVED: &[&str] = &[
 #[derive(Debug, Default)]
 pub(super) struct ViewNames {
     names: Vec<(String, Range<usize>)>,
+    /// Where a view is named by something else than a text.
+    nameless: Vec<usize>,
     /// Whether there is a view without a name.
     unnamed: bool,
 }
@@ -65,17 +67,20 @@ impl ViewNames {
     /// Found in the text: `plain` is without what stands in quotes, `text` with it.
     pub(super) fn of(code: &Code) -> Self {
         if !begins_a_statement(code, "view", |tail| tail.starts_with('(')) || code.function("view").is_some() {
-            return Self { names: Vec::new(), unnamed: true };
+            return Self { unnamed: true, ..Self::default() };
         }
-        let names = calls(&code.plain, "view").filter_map(|(_, open)| {
+        let (mut names, mut nameless) = (Vec::new(), Vec::new());
+        for (_, open) in calls(&code.plain, "view") {
             let quote = open + code.plain[open..].len() - code.plain[open..].trim_start().len();
-            let text = code.parsed[quote..].strip_prefix('"')?;
-            let name = &text[..text.find('"')?];
-            Some((name.to_owned(), quote + 1..quote + 1 + name.len()))
-        });
+            let quoted = code.parsed[quote..].strip_prefix('"').and_then(|text| text.split_once('"'));
+            match quoted {
+                Some((name, _)) => names.push((name.to_owned(), quote + 1..quote + 1 + name.len())),
+                None => nameless.push(quote),
+            }
+        }
         let bare = ["filter", "grid"].into_iter().flat_map(|word| calls(&code.plain, word));
         let unnamed = bare.into_iter().any(|(at, _)| depth(&code.plain[..at]) == 0);
-        Self { names: names.collect(), unnamed }
+        Self { names, nameless, unnamed }
     }
 
     /// The group in the list of facts that a name stands for: its own, or that of the views.
@@ -121,6 +126,11 @@ impl ViewNames {
             };
             let wrong = Diagnostic::new("E-SCRIPT-VIEW", message).at(&code.source, span.clone(), "named here");
             mistakes.add(wrong.help("choose another name: view(\"red\", filter(\"colour\"))"));
+        }
+        for at in &self.nameless {
+            let message = "the name of a view stands in quotes in the call itself: its facts are read by it";
+            let wrong = Diagnostic::new("E-SCRIPT-VIEW", message).at(&code.source, *at..*at + 1, "no name in quotes");
+            mistakes.add(wrong.help("write view(\"red\", filter(\"colour\"))"));
         }
     }
 }
