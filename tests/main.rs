@@ -36,6 +36,8 @@ mod fooled;
 mod forms;
 /// Every shipped behaviour leaves the bytes that were recorded.
 mod golden;
+/// Scripts that ask for too much: refused, or within their limits.
+mod hostile;
 /// Folders of runs and tests: nothing written over, tagged away or forged without a word.
 mod kept;
 /// Every step kept, and brought back by its actions.

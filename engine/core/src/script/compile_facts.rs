@@ -147,7 +147,7 @@ impl Compiler<'_> {
         let access = Access::of(expr);
         match access.as_ref().and_then(Access::group) {
             Some(("laser", [])) => number(Typed::of_fact(FactId::LaserNearest.fact(), 0)?),
-            Some(("laser", [Link::Call(call, _)])) => {
+            Some(("laser", [Link::Call(call, _)])) if matches!(call.name.as_str(), "sector" | "between") => {
                 let span = self.sector(call)?;
                 match FactId::SectorNearest.fact().get {
                     Getter::Sector(get) => Some(Number::Sector(span, get)),

@@ -17,6 +17,8 @@ use std::ops::Range;
 
 /// Longest persistence.
 const MAX_TIME: f64 = 1e6;
+/// Most rules of one script.
+const MOST_RULES: usize = 256;
 
 /// Every rule without a mistake in it.
 pub(super) fn rules(
@@ -44,6 +46,12 @@ pub(super) fn rules(
         }
         lines.entry(written.name).or_insert(line);
         rules.extend(compiled(code, written, ast.shared_lib(), compiler, spoilt, mistakes));
+    }
+    if let Some(one_too_many) = written.get(MOST_RULES) {
+        let at = one_too_many.name_position;
+        let message = format!("a script may have {MOST_RULES} rules, found {}", written.len());
+        let wrong = explain::mistake(&code.source, "E-SCRIPT-LIMIT", at, message, "one too many");
+        mistakes.add(wrong.help("join some by ||, or judge in 'fn reward'"));
     }
     rules
 }

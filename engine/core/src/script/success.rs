@@ -16,6 +16,9 @@ use rhai::{AST, Expr, FnCallExpr, Position, Scope};
 
 const CODE: &str = "E-SCRIPT-SUCCESS";
 
+/// Most conditions of success of one script.
+const MOST_CONDITIONS: usize = 16;
+
 /// What figures can be of, by name.
 #[derive(Debug)]
 pub(super) struct FigureNames<'a> {
@@ -49,7 +52,14 @@ pub(super) fn conditions(
 ) -> Vec<SuccessCondition> {
     let compiler = SuccessCompiler { code, constants, names };
     let mut conditions: Vec<SuccessCondition> = Vec::new();
-    for written in &written_successes(ast.statements()) {
+    let written = written_successes(ast.statements());
+    if let Some(one_too_many) = written.get(MOST_CONDITIONS) {
+        let message = format!("a script may have {MOST_CONDITIONS} conditions of success, found {}", written.len());
+        let at = one_too_many.name_position;
+        let wrong = mistake(&code.source, "E-SCRIPT-LIMIT", at, message, "one too many");
+        mistakes.add(wrong.help("join some by &&"));
+    }
+    for written in &written {
         let bytes = span(code, written.condition);
         if spoilt.touches(&bytes, mistakes) {
             continue;

@@ -161,3 +161,33 @@ fn the_rules_of_the_scripts_are_native() {
         assert!(judge.present().compiled.rules.iter().all(native), "{name}");
     }
 }
+
+/// Whatever the manual says of a rule is judged without the interpreter.
+#[test]
+fn every_form_of_a_rule_is_native() {
+    let head = r#"view("red", filter("colour")); stages(["a", "b"]);
+        measure gap = laser.between(-20, 20).nearest; measure near = if red.seen { gap } else { 5.0 };
+        rule "mark" when laser.front < 1.0 => 0 then stage "b";"#;
+    for flag in [
+        "laser.at(5) < 0.6",
+        "laser.between(-20, 20) < 0.6",
+        "laser.hit_at(5) && laser.hit(90)",
+        "laser.sector(60, 120).hits > 3",
+        "red.seen && abs(red.bearing_deg) < 10",
+        "red.line_seen && red.line_offset_m > 0.2",
+        "red.cell(1, 1) + red.rows(0, 1) - red.columns(1, 2) > 0.3",
+        "ground.left > 120 || ground.hue_deg < 20",
+        "previous.laser.front - laser.front > 0.1",
+        "abs(change(odometry.turned_deg, 6)) > 150",
+        "average(laser.front < 1.0, 2) > 0.5",
+        "fired(\"mark\") > 2 && since(\"mark\") < 4.0",
+        "stage.at(\"b\") && stage.seconds > 20",
+        "near < gap",
+        "time.attempt_s > 60",
+    ] {
+        let behaviour = parse(&format!("{head} rule \"x\" when {flag} for 2 seconds once => 0.1 * gap per second;"));
+        let judge = behaviour.unwrap().judge(0.5, fan(181)).unwrap();
+        let rule = judge.present().compiled.rules.last().unwrap();
+        assert!(matches!((&rule.condition, &rule.value), (Clause::Native(_), Clause::Native(_))), "{flag}");
+    }
+}
