@@ -71,8 +71,10 @@ impl Filter for Threshold {
             return Err(FilterError("threshold reads colour or grey frames, not a mask".to_owned()));
         }
         input.write_luma(output.pixels())?;
+        // Copies, which the loop cannot change: so it becomes vector code.
+        let Self { least, bright, dark } = *self;
         for pixel in output.pixels() {
-            *pixel = if *pixel >= self.least { self.bright } else { self.dark };
+            *pixel = if *pixel >= least { bright } else { dark };
         }
         Ok(())
     }

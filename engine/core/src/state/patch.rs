@@ -85,12 +85,11 @@ impl PatchFinder {
 
     fn scan(&mut self, row: u32, pixels: &[u8]) {
         let mut column = 0;
-        while let Some(from) = pixels[column..].iter().position(|pixel| *pixel != 0) {
-            let from = column + from;
-            let length = pixels[from..].iter().position(|pixel| *pixel == 0).unwrap_or(pixels.len() - from);
+        while let Some(from) = next(pixels, column, true) {
+            let to = next(pixels, from, false).unwrap_or(pixels.len());
             let parent = self.runs.len() as u32;
-            self.runs.push(Run { row, from: from as u32, to: (from + length) as u32, parent });
-            column = from + length;
+            self.runs.push(Run { row, from: from as u32, to: to as u32, parent });
+            column = to;
         }
     }
 
@@ -135,6 +134,23 @@ impl PatchFinder {
     }
 }
 
+/// The first pixel from `at` on that is foreground, or that is not. Eight at a time: most of a mask is alike.
+fn next(pixels: &[u8], at: usize, foreground: bool) -> Option<usize> {
+    const HIGH: u64 = 0x8080_8080_8080_8080;
+    let (eights, rest) = pixels.get(at..)?.as_chunks::<8>();
+    for (index, eight) in eights.iter().enumerate() {
+        let word = u64::from_le_bytes(*eight);
+        // The highest bit of each byte that is not 0: a carry out of the lower seven, or the bit itself.
+        let lit = (((word & !HIGH) + !HIGH) | word) & HIGH;
+        let found = if foreground { lit } else { !lit & HIGH };
+        if found != 0 {
+            return Some(at + 8 * index + found.trailing_zeros() as usize / 8);
+        }
+    }
+    let found = rest.iter().position(|pixel| (*pixel != 0) == foreground)?;
+    Some(at + 8 * eights.len() + found)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -172,7 +188,10 @@ mod tests {
         let mut random = crate::random::Random::new(7, crate::random::Stream::Test);
         for _ in 0..200 {
             let (width, height) = (17, 11);
-            let mask: Vec<u8> = (0..width * height).map(|_| if random.below(100) < 45 { 255 } else { 0 }).collect();
+            // Any byte but 0 is foreground.
+            let pixel =
+                |random: &mut crate::random::Random| if random.below(100) < 45 { 1 + random.below(255) } else { 0 };
+            let mask: Vec<u8> = (0..width * height).map(|_| pixel(&mut random) as u8).collect();
             let (mut seen, mut largest) = (vec![false; mask.len()], 0);
             for start in 0..mask.len() {
                 let (mut next, mut count) = (vec![start], 0);
