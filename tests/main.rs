@@ -75,6 +75,8 @@ mod shipped;
 /// The live view in the terminal: its screen, its keys, and itself in a pseudo terminal.
 #[cfg(feature = "tui")]
 mod terminal;
+/// Learned policies that a script uses: who drives, what is learned, what does not fit.
+mod used;
 /// What is called a success: no cheat, no chance, no reward alone; failures, goals and restarts told apart.
 mod verdict;
 /// The live page by raw connections: what is refused, what is told.

@@ -64,6 +64,23 @@ pub(super) fn check_policies(behaviour: &Behaviour, settings: &Settings) -> Resu
         }
     }
     let combine = ["combine.way", "combine.margin", "combine.scaled"];
+    if behaviour.hands_over() {
+        for (index, policy) in settings.policies.iter().enumerate() {
+            if !behaviour.uses().any(|(_, used)| used == index) {
+                let name = printable(&policy.name);
+                let help = format!("write use \"{name}\" when ...; or take it out");
+                let message = format!("policy \"{name}\" is named and never used");
+                return at(&format!("policy:{index}"), message, "no use of it", &help);
+            }
+        }
+        return match combine.iter().find(|place| behaviour.place_of(place).is_some()) {
+            Some(place) => {
+                let message = "a script uses its policies one at a time or combines them, not both".to_owned();
+                at(place, message, "set here", "take this out, or the uses")
+            }
+            None => Ok(()),
+        };
+    }
     match (settings.policies.len(), combine.iter().find(|place| behaviour.place_of(place).is_some())) {
         (1, _) => at("policy:0", "one policy alone cannot be combined".to_owned(), "the only one", second),
         (0, Some(place)) => {

@@ -185,7 +185,7 @@ impl Parts<'_> {
     pub(super) fn judge(&self) -> Result<Judge> {
         let (run, laser, actions) = (&self.settings.run, &self.settings.laser, &self.settings.actions);
         self.behaviour.check_guards(actions)?;
-        Ok(self.behaviour.judge(run.period_s, laser.fan())?.with_actions(actions))
+        Ok(self.behaviour.judge(run.period_s, laser.fan())?.with_actions(actions, actions.len()))
     }
 
     fn point(&self, error: Diagnostic, place: &str, label: &str, help: Option<String>) -> Box<Diagnostic> {

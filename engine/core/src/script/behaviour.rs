@@ -9,6 +9,7 @@ use crate::geometry::Twist;
 use crate::judge::compiled::CompiledScript;
 use crate::judge::memory::Remembered;
 use crate::judge::rule::CompiledRule;
+use crate::judge::uses::CompiledUse;
 use crate::judge::{Judge, RuleText, reach};
 use crate::outcome::Then;
 use crate::settings::{LaserSettings, RunSettings, ScanFan, Settings};
@@ -185,12 +186,29 @@ impl Behaviour {
     /// # Errors
     /// For the first that does not.
     pub(crate) fn check_guards(&self, actions: &[Twist]) -> Result<()> {
-        guards::check_actions(self.source(), &self.compiled.guards, actions)
+        guards::check_actions(self.source(), &self.compiled.guards, actions, self.hands_over())
     }
 
     /// The guards in their order.
     pub fn guards(&self) -> impl Iterator<Item = &RuleText> {
         self.compiled.guards.iter().map(|guard| &guard.text)
+    }
+
+    /// The uses of learned policies in their order, each with the place of its policy among those that the script names.
+    pub fn uses(&self) -> impl Iterator<Item = (&RuleText, usize)> {
+        self.compiled.uses.iter().map(|one| (&one.text, one.policy))
+    }
+
+    /// Whether it ever hands the robot over to a policy that was learned before.
+    #[must_use]
+    pub fn hands_over(&self) -> bool {
+        !self.compiled.uses.is_empty()
+    }
+
+    /// Whether one of its policies always drives, so that it has nothing of its own to learn.
+    #[must_use]
+    pub fn always_hands_over(&self) -> bool {
+        self.compiled.uses.last().is_some_and(CompiledUse::is_always)
     }
 
     /// A judge for rules that may name beams that the laser does not have: these must not be judged.

@@ -18,6 +18,7 @@ use super::tree::{Tree, tree};
 use super::unread::Unread;
 use super::{
     guards, is_key, measures, memory, names, parts, rehearsal, state_parts, stops, success, syntax, top_level, types,
+    uses,
 };
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, printable};
 use crate::judge::Look;
@@ -25,7 +26,7 @@ use crate::judge::compiled::CompiledScript;
 use crate::judge::needs::Needs;
 use crate::judge::sandbox;
 use crate::judge::views::register_own;
-use crate::settings::Settings;
+use crate::settings::{PolicySettings, Settings};
 use crate::verdict::SuccessCondition;
 use rhai::{AST, Engine, Module, Scope};
 use std::path::Path;
@@ -112,7 +113,8 @@ impl Draft {
         let SetUp { settings, places, mut unread, bins, body } = setup::finish(&log, code, &tree.ast, files, mistakes);
         calls.into_iter().for_each(|call| unread.all_of(call));
         engine.register_global_module(constants_module(&constants).into());
-        let read = ReadScript { code, tree, engine, constants, settings: &settings, needs, bins };
+        let policies = (!unread.any_of("policy")).then_some(settings.policies.as_slice());
+        let read = ReadScript { code, tree, engine, constants, settings: &settings, policies, needs, bins };
         let (compiled, outline, success) = read.compile(&mut spoilt, mistakes)?;
         let behaviour = Behaviour::new(name, settings, places, outline, compiled);
         let behaviour = behaviour.with_success(success).with_body(body).with_params(params);
@@ -128,6 +130,8 @@ struct ReadScript<'a> {
     engine: Engine,
     constants: Scope<'static>,
     settings: &'a Settings,
+    /// The policies that it names; nothing if a call that names one is wrong.
+    policies: Option<&'a [PolicySettings]>,
     needs: Needs,
     bins: Vec<WrittenBins>,
 }
@@ -139,7 +143,7 @@ impl ReadScript<'_> {
         spoilt: &mut Spoilt<'_>,
         mistakes: &mut Mistakes,
     ) -> std::result::Result<(CompiledScript, ScriptOutline, Vec<SuccessCondition>), Diagnostic> {
-        let Self { code, tree, mut engine, constants, settings, mut needs, bins } = self;
+        let Self { code, tree, mut engine, constants, settings, policies, mut needs, bins } = self;
         let mut script = vocabulary(code, &tree, settings);
         check_stages(code, &needs, &script.stages, mistakes);
         measures::check_windows(code, &tree.ast, &script.rules, &script.own, mistakes);
@@ -148,6 +152,7 @@ impl ReadScript<'_> {
         let bins = state_parts::bins(code, &tree.ast, &bins, &mut compiler, spoilt, mistakes);
         let rules = rules(code, &tree.ast, &mut compiler, spoilt, mistakes);
         let guards = guards::guards(code, &tree.ast, &mut compiler, spoilt, mistakes);
+        let uses = uses::uses(code, &tree.ast, policies, &mut compiler, spoilt, mistakes);
         let reward_name = has_function(&tree.ast, "reward").then_some("reward");
         let names = FigureNames {
             rules: rules.iter().map(|rule| rule.text.name.as_str()).chain(reward_name).collect(),
@@ -182,6 +187,7 @@ impl ReadScript<'_> {
             rules,
             looks: looks(&needs, views.len()),
             guards,
+            uses,
             needs,
             remembered,
             views,

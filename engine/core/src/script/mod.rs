@@ -46,6 +46,7 @@ mod tree;
 mod types;
 mod unknown;
 mod unread;
+mod uses;
 mod view_names;
 mod words;
 

@@ -22,7 +22,7 @@ pub(super) fn open(
     allow_unsigned: bool,
 ) -> Result<Runnable> {
     let runnable = open_to_look(argument, overrides, filters, allow_unsigned)?;
-    if !runnable.plan.members.is_empty() {
+    if !runnable.plan.members.is_empty() || !runnable.plan.used.is_empty() {
         return Ok(runnable);
     }
     Ok(Runnable { plan: with_policies(runnable.plan)?, ..runnable })

@@ -149,7 +149,7 @@ fn rules(plan: &Plan, phase: Phase, ledger: &Ledger) -> Vec<RuleScoreEntry> {
 fn entry(plan: &Plan, ledger: &Ledger, step: usize) -> Option<StepEntry> {
     let Record { state, next_state, action, reward, then, explored, contact, beam, nearest_m, pose, .. } =
         ledger.record(step)?;
-    let twist = plan.settings.actions.get(usize::from(action))?;
+    let twist = *plan.motions().get(usize::from(action))?;
     let name = |rule: usize| plan.behaviour.rules()[rule].name.clone();
     let fan = plan.settings.laser.fan();
     Some(StepEntry {
