@@ -49,7 +49,8 @@ impl Pack {
         let script = manifest.entry.script.as_str();
         let stem = script.rsplit('/').next().and_then(|file| file.strip_suffix(".rhai")).unwrap_or(script);
         let bodies = |name: &str| self.body(name, depends).map(Some);
-        let behaviour = Arc::new(Behaviour::parse_with(stem, self.text(script)?, &bodies, &ParamValues::new())?);
+        let behaviour =
+            Arc::new(Behaviour::parse_in(manifest.edition()?, stem, self.text(script)?, &bodies, &ParamValues::new())?);
         let settings = behaviour.settings().clone();
         let layout = Arc::new(Layout::parse(self.world(&behaviour, depends)?, &settings.robot.body)?);
         let unpacked = self.unpack_filters(depends)?;

@@ -14,6 +14,7 @@ use super::{Capabilities, Digest, MAX_PACK_BYTES, PackName, distrusted, malforme
 use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::experiment::{Overrides, Plan};
 use engine::filter::{Catalogue, Form, Sources};
+use engine::settings::Edition;
 use insight::report::write_atomic;
 use insight::store::with_policies;
 
@@ -58,6 +59,7 @@ pub fn scaffold(name: &PackName, folder: &Path, from: Option<(&Path, Sources)>) 
         engine: VersionReq::parse(concat!(">=", env!("CARGO_PKG_VERSION"))).unwrap_or(VersionReq::STAR),
         license: "MIT".to_owned(),
         description: description(name, &said),
+        edition: Some(Edition::NEWEST.number()),
         script: own(&script)?,
         world: world.as_deref().map(own).transpose()?,
         seeds: vec![1, 2, 3],

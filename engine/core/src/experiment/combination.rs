@@ -66,7 +66,7 @@ pub(super) fn check_policies(behaviour: &Behaviour, settings: &Settings) -> Resu
     let combine = ["combine.way", "combine.margin", "combine.scaled"];
     if behaviour.hands_over() {
         for (index, policy) in settings.policies.iter().enumerate() {
-            if !behaviour.uses().any(|(_, used)| used == index) {
+            if behaviour.knows_its_uses() && !behaviour.uses().any(|(_, used)| used == index) {
                 let name = printable(&policy.name);
                 let help = format!("write use \"{name}\" when ...; or take it out");
                 let message = format!("policy \"{name}\" is named and never used");

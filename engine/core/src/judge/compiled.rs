@@ -52,6 +52,8 @@ pub(crate) struct CompiledScript {
     pub guards: Vec<CompiledGuard>,
     /// When which learned policy drives.
     pub uses: Vec<CompiledUse>,
+    /// How many are written; more than there are if some are wrong.
+    pub written_uses: usize,
     pub needs: Needs,
     /// What is worked out before the rules, in its order.
     pub remembered: Vec<Remembered>,

@@ -12,7 +12,7 @@ use crate::judge::rule::CompiledRule;
 use crate::judge::uses::CompiledUse;
 use crate::judge::{Judge, RuleText, reach};
 use crate::outcome::Then;
-use crate::settings::{LaserSettings, RunSettings, ScanFan, Settings};
+use crate::settings::{Edition, LaserSettings, RunSettings, ScanFan, Settings};
 use crate::verdict::{Endable, Success, SuccessCondition};
 use std::ops::Range;
 use std::sync::Arc;
@@ -30,6 +30,7 @@ pub struct Behaviour {
     endable: Endable,
     body: Option<SourceText>,
     params: Vec<Param>,
+    edition: Edition,
 }
 
 impl Behaviour {
@@ -61,6 +62,7 @@ impl Behaviour {
             endable,
             body: None,
             params: Vec::new(),
+            edition: Edition::NEWEST,
         }
     }
 
@@ -80,6 +82,16 @@ impl Behaviour {
 
     pub(super) fn with_params(self, params: Vec<Param>) -> Self {
         Self { params, ..self }
+    }
+
+    pub(super) fn of_edition(self, edition: Edition) -> Self {
+        Self { edition, ..self }
+    }
+
+    /// The edition whose defaults it has.
+    #[must_use]
+    pub fn edition(&self) -> Edition {
+        self.edition
     }
 
     /// The numbers that may be set from outside, in their order.
@@ -202,7 +214,13 @@ impl Behaviour {
     /// Whether it ever hands the robot over to a policy that was learned before.
     #[must_use]
     pub fn hands_over(&self) -> bool {
-        !self.compiled.uses.is_empty()
+        self.compiled.written_uses > 0
+    }
+
+    /// Whether every use that is written is understood.
+    #[must_use]
+    pub(crate) fn knows_its_uses(&self) -> bool {
+        self.compiled.uses.len() == self.compiled.written_uses
     }
 
     /// Whether one of its policies always drives, so that it has nothing of its own to learn.

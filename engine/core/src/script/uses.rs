@@ -6,7 +6,7 @@ use super::positions::{first, span};
 use super::rules::stage;
 use super::source::Code;
 use super::spoilt::Spoilt;
-use super::syntax::{Next, form, is_form_of, wrong};
+use super::syntax::{Forms, Next, form, is_form_of, wrong};
 use crate::diagnostic::{Diagnostic, Mistakes, Result, nearest_name, printable};
 use crate::judge::explain;
 use crate::judge::expression::{Flag, Typed};
@@ -68,6 +68,11 @@ fn written_uses(statements: &[Stmt]) -> Vec<WrittenUse<'_>> {
         Some(WrittenUse { name, position, stages, condition })
     });
     written.collect()
+}
+
+/// How many uses are written, at least; one that the parser refused is not in the tree.
+pub(super) fn count(ast: &AST, forms: Forms) -> usize {
+    written_uses(ast.statements()).len().max(usize::from(forms.uses))
 }
 
 /// Every use without a mistake in it. `policies` are those that the script names; nothing if they could not be read.

@@ -18,7 +18,7 @@ use engine::filter::Catalogue;
 use engine::geometry::Twist;
 use engine::learner::Carry;
 use engine::script::{Behaviour, ParamValues};
-use engine::settings::{SETTINGS, Settings, Value, ViewSettings, apply};
+use engine::settings::{Edition, SETTINGS, Settings, Value, ViewSettings, apply};
 use engine::world::Layout;
 
 const FORMAT: u32 = 1;
@@ -35,6 +35,9 @@ struct RunFile {
     format: u32,
     engine: String,
     behaviour: String,
+    /// The edition whose defaults the script has; a run of version 0.1 does not say it.
+    #[serde(default = "first_edition")]
+    edition: u32,
     seed: u64,
     actions: Vec<[f64; 2]>,
     filters: Vec<FilterEntry>,
@@ -115,6 +118,10 @@ impl TextEntry {
     }
 }
 
+fn first_edition() -> u32 {
+    Edition::FIRST.number()
+}
+
 fn sha256(text: &str) -> String {
     Digest::of(text.as_bytes()).to_string()
 }
@@ -136,6 +143,7 @@ pub fn run_to_toml(plan: &Plan, seed: u64) -> Result<String> {
         format: format(!plan.earlier.is_empty(), !settings.further_views.is_empty()),
         engine: env!("CARGO_PKG_VERSION").to_owned(),
         behaviour: plan.behaviour.name().to_owned(),
+        edition: plan.behaviour.edition().number(),
         seed,
         actions: settings.actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
         filters: settings.view.filters.iter().map(|filter| FilterEntry::new(filter, &plan.filters)).collect(),
@@ -231,11 +239,16 @@ impl StoredRun {
             );
             return Diagnostic::new("E-RUN-FILE", message).fail();
         }
+        let Some(edition) = Edition::of(file.edition) else {
+            let message =
+                format!("'{}' is of edition {}, which this engine does not know", source.path.display(), file.edition);
+            return Diagnostic::new("E-RUN-FILE", message).help("use a newer engine").fail();
+        };
         let body = file.body.as_ref().map(|body| body.check(source)).transpose()?;
         let behaviour_of = |script: &TextEntry, params: &ParamValues| {
             // The run has the file of the one body that its script names.
             let bodies = |_: &str| Ok(body.clone());
-            Behaviour::parse_with(&file.behaviour, script.check(source)?, &bodies, params).map(Arc::new)
+            Behaviour::parse_in(edition, &file.behaviour, script.check(source)?, &bodies, params).map(Arc::new)
         };
         let behaviour = behaviour_of(&file.script, &file.params)?;
         let layout = Arc::new(Layout::parse(file.world.check(source)?, &behaviour.settings().robot.body)?);
