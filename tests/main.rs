@@ -28,6 +28,8 @@ mod dependencies;
 mod determinism;
 /// The pages for people: links, lengths, commands, the example that is worked by hand.
 mod docs;
+/// Editions of the language: upgraded, stored; the language as data.
+mod editions;
 /// Every filter that ships keeps the contract, in every form.
 mod filters;
 /// Scripts that were once called a success and are none.

@@ -264,6 +264,9 @@ pub(crate) struct FilterArguments {
     /// PNG or JPEG files, or folders of them; at most 64 MiB and 50 megapixels each
     #[arg(required = true)]
     pub(crate) image: Vec<PathBuf>,
+    /// The view to see through, of a script that has several; the first one otherwise
+    #[arg(long, value_name = "NAME")]
+    pub(crate) view: Option<String>,
     /// The folder of a run: says which states its training met
     #[arg(long, value_name = "RUN")]
     pub(crate) run: Option<PathBuf>,

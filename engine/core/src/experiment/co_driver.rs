@@ -145,6 +145,7 @@ impl CoDriver {
     /// Takes over.
     fn begin(&mut self, observation: &Observation) -> Result<()> {
         (self.done, self.steps, self.last) = (0, 0, None);
+        self.eyes.forget();
         self.eyes.look(&observation.image)?;
         self.rest(observation)
     }
@@ -164,6 +165,8 @@ impl CoDriver {
         }
         self.tell(observation, self.last.unwrap_or(NO_ACTION));
         if self.judge.judge()?.then.is_some() {
+            // The grids begin anew with the next image.
+            self.eyes.forget();
             self.steps = 0;
             return self.rest(observation);
         }

@@ -39,6 +39,7 @@ impl Member {
         let chain = Chain::new(&self.filters, width_px, height_px, &plan.filters)
             .map_err(|error| wrong(&error.error.message))?;
         let grid = Grid::new(&self.grid, width_px, height_px).map_err(|error| wrong(&error.0))?;
+        let grid = grid.with_period(plan.settings.run.period_s);
         let map = Box::new(GridMap::new(&self.grid, grid.clone()));
         Ok(Eyes::new(vec![chain], vec![grid], map, &plan.settings))
     }

@@ -199,6 +199,11 @@ impl<R: Robot> Cycle<R> {
         &self.states
     }
 
+    /// How many things the robot can be told to do.
+    pub(super) fn motions(&self) -> usize {
+        self.actions.len()
+    }
+
     /// Steps that were done.
     #[must_use]
     pub fn steps(&self) -> u64 {
@@ -283,6 +288,7 @@ impl<R: Robot> Cycle<R> {
         self.judge.recovered();
         self.potential = 0.0;
         self.since_recovery = 0;
+        self.eyes.iter_mut().for_each(Eyes::forget);
         self.perceive()?;
         self.rest()
     }

@@ -100,10 +100,15 @@ impl Parts<'_> {
     /// The fresh grid of a view.
     pub(super) fn grid(&self, view: &ViewSettings) -> Result<Grid> {
         let (width_px, height_px) = self.image_px();
-        Grid::new(&view.grid, width_px, height_px).map_err(|error| {
-            let help = Some("use fewer rows or columns".to_owned());
-            self.point(Diagnostic::new("E-GRID", error.0), &view.place("grid.rows"), "this many rows", help)
-        })
+        let grid = Grid::new(&view.grid, width_px, height_px).map_err(|error| {
+            let without_fill = view.grid.remember_s > 0.0 && !view.grid.fill;
+            let (place, label, help) = match without_fill {
+                true => ("grid.remember_s", "asks to remember", "take it out, or leave out fill: false"),
+                false => ("grid.rows", "this many rows", "use fewer rows or columns"),
+            };
+            self.point(Diagnostic::new("E-GRID", error.0), &view.place(place), label, Some(help.to_owned()))
+        })?;
+        Ok(grid.with_period(self.settings.run.period_s))
     }
 
     /// Fresh eyes: a chain and a grid for each view, and the map.

@@ -171,7 +171,7 @@ mod tests {
     use crate::state::Grid;
 
     fn grid() -> (GridSettings, Grid) {
-        let settings = GridSettings { rows: 2, columns: 2, occupied: 0.5, fill: true };
+        let settings = GridSettings { rows: 2, columns: 2, occupied: 0.5, fill: true, remember_s: 0.0 };
         let grid = Grid::new(&settings, 4, 4).unwrap();
         (settings, grid)
     }

@@ -30,8 +30,16 @@ impl PolicyText {
 /// # Errors
 /// If one is missing or damaged, or was learned with another grid shape or other actions; each points at its call.
 pub fn with_policies(plan: Plan) -> Result<Plan> {
+    with_policies_or(plan, &|_| Ok(None))
+}
+
+/// As [`with_policies`]; `packed` gives what stands in a pack, by the path of its file or by its name where there is no file.
+///
+/// # Errors
+/// As [`with_policies`], and those of `packed`.
+pub fn with_policies_or(plan: Plan, packed: &dyn Fn(&Path) -> Result<Option<PolicyText>>) -> Result<Plan> {
     let policies = plan.settings.policies.iter().enumerate();
-    let texts = policies.map(|(index, policy)| find(&plan, index, &policy.path)).collect::<Result<_>>()?;
+    let texts = policies.map(|(index, policy)| find(&plan, index, &policy.path, packed)).collect::<Result<_>>()?;
     with_policy_texts(plan, texts)
 }
 
@@ -102,10 +110,21 @@ fn first_file(tried: &[PathBuf]) -> Option<&PathBuf> {
 }
 
 /// The text of a policy: its path is meant from the script or, if it is not there, from where the user stands.
-fn find(plan: &Plan, index: usize, path: &str) -> Result<PolicyText> {
+fn find(
+    plan: &Plan,
+    index: usize,
+    path: &str,
+    packed: &dyn Fn(&Path) -> Result<Option<PolicyText>>,
+) -> Result<PolicyText> {
     let folder = plan.behaviour.source().path.parent().unwrap_or(Path::new(""));
     let tried = tried(folder, path);
-    let Some(found) = first_file(&tried) else {
+    let found = first_file(&tried);
+    if found.is_none_or(|found| found.extension().is_some_and(|ending| ending == "pack"))
+        && let Some(text) = packed(found.map_or(Path::new(path), PathBuf::as_path))?
+    {
+        return Ok(text);
+    }
+    let Some(found) = found else {
         let name = printable(&plan.settings.policies[index].name);
         let message =
             format!("policy \"{name}\" is not there: no file '{}'", printable(&tried[1].display().to_string()));
