@@ -7,7 +7,7 @@
 use super::telling::{LaserTold, StepTold, tell};
 use super::{Eyes, Plan, UsedPolicy};
 use crate::allowed::Allowed;
-use crate::diagnostic::Result;
+use crate::diagnostic::{Diagnostic, Result, printable};
 use crate::geometry::Twist;
 use crate::judge::{Judge, NO_ACTION};
 use crate::sensors::observation::Observation;
@@ -115,6 +115,10 @@ impl CoDriver {
     fn new(plan: &Plan, used: &UsedPolicy) -> Result<Self> {
         let (judge, mut eyes) = (used.plan.judge()?, used.plan.eyes()?);
         eyes.look_for(judge.looks());
+        let Some(every) = used.every(plan.settings.run.period_s) else {
+            let message = format!("policy \"{}\" cannot drive in steps of this length", printable(&used.name));
+            return Diagnostic::new("E-POLICY", message).help("leave --set run.period_s out").fail();
+        };
         let actions = used.plan.settings.actions.clone();
         let speed = |action: &usize| (actions[*action].linear_m_per_s.abs(), actions[*action].angular_rad_per_s.abs());
         let slowest = (0..actions.len()).min_by(|a, b| {
@@ -127,7 +131,7 @@ impl CoDriver {
             laser: LaserTold::of(&plan.settings.laser),
             motions: plan.motions_of(used),
             slowest: slowest.unwrap_or(0),
-            every: used.every(plan.settings.run.period_s).unwrap_or(1),
+            every,
             actions,
             done: 0,
             steps: 0,

@@ -49,11 +49,11 @@ mod tests {
 
     #[test]
     fn a_chain_that_goes_on_from_another_makes_the_same_bytes() {
-        let mut first = chain(&[("blur", &[]), ("colour", &[("hue_deg", 0.0)])]);
-        let mut second = chain(&[("blur", &[]), ("colour", &[("hue_deg", 230.0)])]);
+        let mut first = chain(&[("blur", &[]), ("sobel", &[("threshold", 60.0)])]);
+        let mut second = chain(&[("blur", &[]), ("sobel", &[("threshold", 90.0)])]);
         assert_eq!(second.shared_with(&first), 1);
         let (alone, image) = (second.apply(&image()).unwrap().to_vec(), image());
-        let mut third = chain(&[("blur", &[]), ("colour", &[("hue_deg", 230.0)])]);
+        let mut third = chain(&[("blur", &[]), ("sobel", &[("threshold", 90.0)])]);
         first.apply(&image).unwrap();
         assert_eq!(third.apply_after(&image, &first, 1).unwrap(), alone);
         assert!(third.stages().zip(second.stages()).all(|(one, other)| one.1 == other.1));
