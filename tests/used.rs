@@ -48,7 +48,8 @@ fn a_used_policy_drives_while_its_condition_holds_and_the_script_learns_the_rest
     // Every step is chosen by whom the condition says, with actions of the one that chose.
     let listed = json(&bench.ok(&["replay", "runs/mine/1", "--from", "0", "--to", "799", "--json"]));
     let steps = listed["listed"].as_array().unwrap();
-    let slow = |step: &Value| step["motion"][0] == 0.1;
+    let slow = |step: &Value| step["used"] == "slow";
+    assert!(steps.iter().all(|step| slow(step) == (step["motion"][0] == 0.1)), "each has actions of its own");
     let by_slow = steps.iter().filter(|step| slow(step)).count();
     assert!(by_slow > 10 && by_slow < 790, "{by_slow}");
     // Its step is twice as long: where it drives for two steps from the beginning of one, it does the same twice.
@@ -165,4 +166,13 @@ fn a_used_policy_without_its_run() {
 fn a_script_that_uses_and_combines() {
     let call = "combine(\"sum\");";
     assert_snapshot!(wrong(&format!("{NAMED}\nuse \"slow\" when robot.contact;\n{call}\n{SCRIPT}")));
+}
+
+#[test]
+fn a_policy_that_uses_policies_itself() {
+    let bench = bench("use \"slow\" when laser.front < 1.5;");
+    bench.engine(&["run", "mine.rhai"]);
+    let named = "policy(\"mine\", \"runs/mine/1\");";
+    bench.write("more.rhai", format!("{named}\nuse \"mine\" when robot.contact;\n{SCRIPT}"));
+    assert_snapshot!(bench.failure(&["run", "more.rhai"]));
 }

@@ -24,6 +24,7 @@ use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, printable};
 use crate::judge::Look;
 use crate::judge::compiled::CompiledScript;
 use crate::judge::needs::Needs;
+use crate::judge::rule::CompiledRule;
 use crate::judge::sandbox;
 use crate::judge::views::register_own;
 use crate::settings::{Edition, PolicySettings, Settings};
@@ -161,13 +162,7 @@ impl ReadScript<'_> {
         let guards = guards::guards(code, &tree.ast, &mut compiler, spoilt, mistakes);
         let written_uses = uses::count(&tree.ast, Forms::of(code));
         let uses = uses::uses(code, &tree.ast, policies, &mut compiler, spoilt, mistakes);
-        let reward_name = has_function(&tree.ast, "reward").then_some("reward");
-        let names = FigureNames {
-            rules: rules.iter().map(|rule| rule.text.name.as_str()).chain(reward_name).collect(),
-            stages: settings.stages.iter().map(String::as_str).collect(),
-            measures: tree.known.measures.iter().map(String::as_str).collect(),
-            own_doing: OwnDoing::of(tree.ast.statements(), &|name| code.views.group_of(name).is_some()),
-        };
+        let names = figure_names(code, &tree, settings, &rules);
         let success = success::conditions(code, &tree.ast, &constants, &names, spoilt, mistakes);
         let function = |name| if has_function(&tree.ast, name) { code.function(name) } else { None };
         let (reward, calibrate) = (function("reward"), function("calibrate"));
@@ -311,6 +306,17 @@ fn vocabulary(code: &Code, tree: &Tree, settings: &Settings) -> Vocabulary {
         stages: settings.stages.clone(),
         own: tree.ast.iter_functions().map(|function| function.name.to_owned()).collect(),
         ..Vocabulary::default()
+    }
+}
+
+/// What figures of a test may be asked for by name.
+fn figure_names<'a>(code: &Code, tree: &'a Tree, settings: &'a Settings, rules: &'a [CompiledRule]) -> FigureNames<'a> {
+    let reward_name = has_function(&tree.ast, "reward").then_some("reward");
+    FigureNames {
+        rules: rules.iter().map(|rule| rule.text.name.as_str()).chain(reward_name).collect(),
+        stages: settings.stages.iter().map(String::as_str).collect(),
+        measures: tree.known.measures.iter().map(String::as_str).collect(),
+        own_doing: OwnDoing::of(tree.ast.statements(), &|name| code.views.group_of(name).is_some()),
     }
 }
 

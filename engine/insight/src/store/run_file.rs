@@ -282,6 +282,16 @@ impl StoredRun {
     }
 }
 
+/// Whether the text of a `run.toml` holds policies that its script uses.
+pub(super) fn uses_policies(source: &SourceText) -> bool {
+    #[derive(Deserialize)]
+    struct Uses {
+        #[serde(default)]
+        used: Vec<toml::Value>,
+    }
+    toml::from_str(&source.text).is_ok_and(|Uses { used }| !used.is_empty())
+}
+
 fn not_one_run(source: &SourceText, what: &str) -> Diagnostic {
     let message = format!("the legs of '{}' differ in {what}: only the reward may change", source.path.display());
     Diagnostic::new("E-RUN-FILE", message).help("run the behaviour again")

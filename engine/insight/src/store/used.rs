@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::members::{PolicyText, wrong};
-use super::run_file::StoredRun;
+use super::run_file::{StoredRun, uses_policies};
 use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::experiment::{Decider, Plan, UsedPolicy};
 
@@ -31,6 +31,11 @@ fn used(plan: &Plan, index: usize, PolicyText { policy, run }: PolicyText) -> Re
         let help = "a policy that drives by itself brings its script along: name the folder of its run";
         return Err(wrong(plan, index, message, "this policy", help));
     };
+    // Looked at before it is read whole: a run within a run within a run would have no end.
+    if uses_policies(&run) {
+        let message = format!("policy \"{shown}\" uses policies itself");
+        return Err(wrong(plan, index, message, "this policy", "name those here, each by a policy(...) of its own"));
+    }
     let in_words = |error: Box<Diagnostic>| {
         let message = format!("policy \"{shown}\": {}", error.message);
         wrong(plan, index, message, "this policy", "learn its behaviour again")

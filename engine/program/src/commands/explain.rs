@@ -135,13 +135,7 @@ fn print(console: &mut Console, plan: &Plan, report: &StepReport) -> std::result
     };
     console.line(&format!("action:    {}{how}", motion(reasons.motion)))?;
     if let Some(used) = &reasons.used {
-        let read: Vec<&FactReasons> = used.parts.iter().flat_map(|part| &part.facts).collect();
-        let why = if read.is_empty() { String::new() } else { format!(", since {}", facts(read)) };
-        let UseReasons { name, line, state, text, .. } = used;
-        console.line(&format!(
-            "use:       \"{}\" (line {line}) drives{why}; its state {state}: {text}",
-            printable(name)
-        ))?;
+        print_used(console, used)?;
     }
     print_guards(console, plan, &reasons.guards)?;
     let (_, columns) = plan.drawn_grid()?;
@@ -183,6 +177,14 @@ fn print(console: &mut Console, plan: &Plan, report: &StepReport) -> std::result
         console.line(&format!("  \"{}\" (line {}): {}", printable(&rule.name), rule.line, silence(rule)))?;
     }
     console.line(&format!("\npictures:  {}\n           {}", report.pictures[0], report.pictures[1]))
+}
+
+/// Which learned policy chose the action, and why it did.
+fn print_used(console: &mut Console, used: &UseReasons) -> std::result::Result<(), ConsoleError> {
+    let read: Vec<&FactReasons> = used.parts.iter().flat_map(|part| &part.facts).collect();
+    let why = if read.is_empty() { String::new() } else { format!(", since {}", facts(read)) };
+    let UseReasons { name, line, state, text, .. } = used;
+    console.line(&format!("use:       \"{}\" (line {line}) drives{why}; its state {state}: {text}", printable(name)))
 }
 
 /// What guards took away when the action was chosen, and why.

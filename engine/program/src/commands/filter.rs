@@ -67,16 +67,7 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
         let error = Diagnostic::new("E-COMBINES", message).help("give the script of one of its policies");
         return Err(Box::new(error).into());
     }
-    let has_parts = plan.settings.has_parts();
-    let plan = match &arguments.view {
-        Some(view) => plan.through(view)?,
-        None => plan,
-    };
-    if has_parts && arguments.run.is_some() {
-        let message = "the states of this behaviour have several parts: those of one view alone were not counted";
-        let error = Diagnostic::new("E-POLICY-FILE", message).help("leave --run out");
-        return Err(Box::new(error).into());
-    }
+    let plan = through(plan, arguments)?;
     let met = arguments.run.as_deref().map(|run| met(run, &plan)).transpose()?;
     let files = photograph_files(&arguments.image)?;
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(plan.behaviour.name()).join("filter"));
@@ -119,6 +110,18 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
     let alike = told_apart(&all, &grid, met.as_ref(), console)?;
     let new = met.is_some() && told_new(&all, arguments.new_share, console)?;
     Ok(u8::from(alike || new))
+}
+
+/// Through one of several views, if one is named; what training met is known of states of one view alone.
+fn through(plan: Sight, arguments: &FilterArguments) -> Result<Sight> {
+    if plan.settings.has_parts() && arguments.run.is_some() {
+        let message = "the states of this behaviour have several parts: those of one view alone were not counted";
+        return Diagnostic::new("E-POLICY-FILE", message).help("leave --run out").fail();
+    }
+    match &arguments.view {
+        Some(view) => plan.through(view),
+        None => Ok(plan),
+    }
 }
 
 /// Says how many images show states that training never met, or hardly; whether too many are new.
