@@ -125,7 +125,7 @@ impl Parts<'_> {
             return Ok(Box::new(GridMap::new(&view.grid, self.grid(view)?)));
         }
         let of_view = |(view, settings): (usize, &ViewSettings)| {
-            let map = GridMap::new(&settings.grid, self.grid(settings)?);
+            let map = Box::new(GridMap::new(&settings.grid, self.grid(settings)?));
             Ok(StatePart::View { name: settings.name.clone(), view, map })
         };
         let views = || self.settings.views().enumerate();
