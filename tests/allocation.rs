@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use engine::diagnostic::SourceText;
-use engine::experiment::{Ledger, Overrides, Plan, learn_into};
+use engine::experiment::{Ledger, Overrides, Plan, UsedPolicy, learn, learn_into};
 use engine::geometry::{Pose, Twist};
 use engine::script::Behaviour;
 use engine::settings::Settings;
@@ -85,5 +85,22 @@ fn more_steps_through_scharr_allocate_nothing_more() {
     let behaviour = Behaviour::parse("wall", SourceText::new(path, text)).unwrap();
     let plan = Plan::new(Arc::new(behaviour), &Overrides::default()).unwrap();
     assert_eq!(plan.settings.view.filters[0].name, "scharr");
+    assert_eq!(allocations(&plan, 5_000), allocations(&plan, 1_000));
+}
+
+#[test]
+fn more_steps_with_a_used_policy_allocate_nothing_more() {
+    let path = root().join("scripts/wall.rhai");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let plan = |text: &str| {
+        let behaviour = Behaviour::parse("wall", SourceText::new(path.clone(), text)).unwrap();
+        Plan::new(Arc::new(behaviour), &Overrides { steps: Some(400), ..Overrides::default() }).unwrap()
+    };
+    let source = SourceText::new("policy.toml", "");
+    let own = plan(&text);
+    let policy = learn(&own, 1, &AtomicBool::new(false), &|_| ()).unwrap().policy;
+    let used = UsedPolicy { name: "wall".to_owned(), plan: own, policy, texts: [source.clone(), source] };
+    let uses = "policy(\"wall\", \"runs/wall/1\"); use \"wall\" when laser.front < 1.5;";
+    let plan = plan(&format!("{uses}\n{text}")).with_used(vec![Arc::new(used)]);
     assert_eq!(allocations(&plan, 5_000), allocations(&plan, 1_000));
 }

@@ -127,7 +127,8 @@ impl Example {
         };
         let ((width_px, height_px), (rows, columns)) = (pair("A mask of "), pair("under a grid of "));
         let occupied = number(after("`occupied = "));
-        let settings = GridSettings { rows: rows as u64, columns: columns as u64, occupied, fill: true };
+        let settings =
+            GridSettings { rows: rows as u64, columns: columns as u64, occupied, fill: true, remember_s: 0.0 };
         let row = |label: &str| -> Vec<usize> {
             let line = text.lines().find(|line| line.starts_with(label)).unwrap();
             line.split_whitespace().skip(1).map(number).collect()

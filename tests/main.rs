@@ -28,6 +28,8 @@ mod dependencies;
 mod determinism;
 /// The pages for people: links, lengths, commands, the example that is worked by hand.
 mod docs;
+/// Editions of the language: upgraded, stored; the language as data.
+mod editions;
 /// Every filter that ships keeps the contract, in every form.
 mod filters;
 /// Scripts that were once called a success and are none.
@@ -77,6 +79,8 @@ mod shipped;
 /// The live view in the terminal: its screen, its keys, and itself in a pseudo terminal.
 #[cfg(feature = "tui")]
 mod terminal;
+/// Learned policies that a script uses: who drives, what is learned, what does not fit.
+mod used;
 /// What is called a success: no cheat, no chance, no reward alone; failures, goals and restarts told apart.
 mod verdict;
 /// The live page by raw connections: what is refused, what is told.

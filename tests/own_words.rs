@@ -9,7 +9,7 @@ use engine::experiment::{
 use engine::filter::Catalogue;
 use insight::store::{StoredRun, run_to_toml};
 
-use crate::support::Bench;
+use crate::support::{Bench, SCRIPT};
 
 /// A short behaviour with statements before its rules.
 fn script(statements: &str) -> String {
@@ -209,4 +209,36 @@ fn without_guards_a_summary_says_nothing_of_them() {
     bench.write("own.rhai", script(""));
     bench.engine(&["run", "own.rhai"]);
     assert!(!bench.read("runs/own/1/summary.json").contains("forbidden"));
+}
+
+#[test]
+fn a_grid_that_remembers_is_learned_stored_and_verified() {
+    let bench = Bench::new();
+    bench.write(
+        "mine.rhai",
+        format!("{SCRIPT}filter(\"sobel\", #{{ threshold: 200 }}); grid(#{{ remember_s: 2.0 }});\n"),
+    );
+    bench.engine(&["run", "mine.rhai"]);
+    let policy = bench.read("runs/mine/1/policy.toml");
+    assert!(policy.contains("\nremember_s = 2.0\n") && policy.contains("\nstates = 125\n"), "{policy}");
+    assert!(bench.ok(&["replay", "runs/mine/1", "--verify"]).contains("bit for bit"));
+    bench.write("mine.rhai", format!("{SCRIPT}grid(#{{ remember_s: 2.0, fill: false }});\n"));
+    let told = bench.failure(&["run", "mine.rhai"]);
+    assert!(told.contains("E-GRID") && told.contains("remember_s needs fill"), "{told}");
+}
+
+#[test]
+fn views_that_begin_alike_leave_the_same_bytes_as_views_that_do_not() {
+    let bench = Bench::new();
+    let run = |second: &str| {
+        let views = format!(
+            "view(\"a\", filter(\"blur\"), filter(\"sobel\", #{{ threshold: 60 }}));\nview(\"b\", {second}, filter(\"sobel\", #{{ threshold: 90 }}));\n"
+        );
+        bench.write("mine.rhai", format!("{SCRIPT}{views}"));
+        let output = bench.engine(&["run", "mine.rhai", "--json", "--force"]);
+        let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        (summary["state_hash"].clone(), summary["log_sha256"].clone())
+    };
+    // The default written out is the same filter to a camera, and not the same text.
+    assert_eq!(run("filter(\"blur\")"), run("filter(\"blur\", #{ radius_px: 1 })"));
 }

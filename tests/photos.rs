@@ -333,3 +333,22 @@ fn images_that_all_have_one_state_are_told() {
     );
     assert_eq!(output.status.code(), Some(1));
 }
+
+// Several views
+
+#[test]
+fn a_view_of_several_is_seen_by_its_name() {
+    let bench = Bench::new();
+    let views = "view(\"red\", filter(\"colour\")); view(\"edges\", filter(\"sobel\", #{ threshold: 60 }));";
+    let script = bench.read("short.rhai");
+    bench.write("short.rhai", format!("{script}{views}"));
+    // Red on the left half, and nothing else that is coloured.
+    bench.write("half.png", painted(|x| if x < 80 { [220, 20, 20] } else { [120, 120, 120] }));
+    let red = &seen(&bench, &["half.png", "--view", "red"])[0];
+    assert_eq!((&red["state"], &red["coverage"], &red["size"]), (&(3 + 4 * 3).into(), &0.5.into(), &0.5.into()));
+    // The middle of the left half is half of tan 40 degrees aside: 22.8 degrees, more on the floor below.
+    assert!((22.0..45.0).contains(&red["bearing_deg"].as_f64().unwrap()), "{red}");
+    let edges = &seen(&bench, &["half.png", "--view", "edges"])[0];
+    assert!(edges["coverage"].as_f64().unwrap() < 0.1, "{edges}");
+    assert_snapshot!(bench.failure(&["filter", "short.rhai", "half.png", "--view", "rde"]));
+}

@@ -24,3 +24,5 @@ mod scripts;
 mod strangers;
 /// Keys, signatures, locks: who is refused, and what to type then.
 mod trust;
+/// Scripts that use learned policies, and policies that come from packs.
+mod uses;

@@ -28,6 +28,8 @@ pub enum Stream {
     Untrained = 7,
     /// The speeds of movers that have a range of them.
     Movers = 9,
+    /// The choices of learned policies that a script uses.
+    Used = 11,
 }
 
 /// One stream of random numbers.

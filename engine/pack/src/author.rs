@@ -39,6 +39,9 @@ pub struct Author {
     pub license: String,
     /// One sentence.
     pub description: String,
+    /// The edition of the language that its scripts are of; without it the first, which packs of version 0.1 are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub edition: Option<u32>,
     /// The behaviour's script.
     pub script: EntryPath,
     /// The world; without it, the one that the script names.
@@ -92,6 +95,7 @@ impl Author {
             engine: self.engine.clone(),
             license: self.license.clone(),
             description: self.description.clone(),
+            edition: self.edition,
             entry: PackEntry { script: self.script.clone(), world: self.world.clone(), policy: None },
             capabilities: self.capabilities.clone(),
             depends: self.depends.clone(),

@@ -7,6 +7,7 @@ use super::entry_path::{EntryPath, kind};
 use super::evidence::Evidence;
 use super::{Digest, MAX_MANIFEST_BYTES, MAX_SEEDS, PackName, malformed};
 use engine::diagnostic::{Diagnostic, Result, SourceText, nearest_name, printable};
+use engine::settings::Edition;
 
 /// The manifest's name in a pack.
 pub(super) const FILE: &str = "manifest.toml";
@@ -31,6 +32,9 @@ pub struct Manifest {
     pub license: String,
     /// One sentence.
     pub description: String,
+    /// The edition of the language that its scripts are of; without it the first, which packs of version 0.1 are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub edition: Option<u32>,
     /// The files that a run starts from.
     pub entry: PackEntry,
     /// What it asks for; nothing unless said.
@@ -168,6 +172,20 @@ impl Manifest {
         }
         let message = format!("{} {} runs on engines {}, this is {own}", self.name, self.version, self.engine);
         malformed("E-PACK-ENGINE", message).help("get another version of the pack or of the engine").fail()
+    }
+
+    /// The edition that its scripts are of.
+    ///
+    /// # Errors
+    /// `E-PACK-ENGINE` if this engine does not know it.
+    pub fn edition(&self) -> Result<Edition> {
+        let number = self.edition.unwrap_or(Edition::FIRST.number());
+        let newest = Edition::NEWEST.number();
+        Edition::of(number).ok_or_else(|| {
+            let message =
+                format!("{} {} is of edition {number}, this engine knows 1 to {newest}", self.name, self.version);
+            Box::new(malformed("E-PACK-ENGINE", message).help("get another version of the pack or of the engine"))
+        })
     }
 
     fn check(&self) -> Result<()> {

@@ -15,7 +15,7 @@ use engine::filter::{Catalogue, Sources};
 use engine::learner::Policy;
 use engine::script::{Behaviour, ParamValues};
 use engine::world::Layout;
-use insight::store::{policy_from_toml, policy_to_toml, with_policy_texts};
+use insight::store::{PolicyText, policy_from_toml, policy_to_toml, with_policy_texts};
 
 /// A pack's behaviour, ready to be learned or tested.
 #[derive(Clone)]
@@ -49,14 +49,15 @@ impl Pack {
         let script = manifest.entry.script.as_str();
         let stem = script.rsplit('/').next().and_then(|file| file.strip_suffix(".rhai")).unwrap_or(script);
         let bodies = |name: &str| self.body(name, depends).map(Some);
-        let behaviour = Arc::new(Behaviour::parse_with(stem, self.text(script)?, &bodies, &ParamValues::new())?);
+        let behaviour =
+            Arc::new(Behaviour::parse_in(manifest.edition()?, stem, self.text(script)?, &bodies, &ParamValues::new())?);
         let settings = behaviour.settings().clone();
         let layout = Arc::new(Layout::parse(self.world(&behaviour, depends)?, &settings.robot.body)?);
         let unpacked = self.unpack_filters(depends)?;
         sources.folders.extend(unpacked.iter().map(|folder| folder.path().to_owned()));
         let filters = Arc::new(Catalogue::new(sources)?);
         let plan = Plan::with_layout(Arc::clone(&behaviour), settings, layout, filters)?.with_changes(overrides)?;
-        let plan = if plan.learns() { plan } else { with_policy_texts(plan, &self.policies(&behaviour)?)? };
+        let plan = with_policy_texts(plan, self.policies(&behaviour)?)?;
         Ok(Runnable { plan, unpacked })
     }
 
@@ -114,13 +115,17 @@ impl Pack {
         malformed("E-PACK-ROBOT", message).help(format!("its author puts {file} into the pack")).fail()
     }
 
-    fn policies(&self, behaviour: &Behaviour) -> Result<Vec<SourceText>> {
+    fn policies(&self, behaviour: &Behaviour) -> Result<Vec<PolicyText>> {
         let named = behaviour.settings().policies.iter().enumerate();
         let text = |(index, policy): (usize, &engine::settings::PolicySettings)| {
             let path = inside(self.script_folder(), &policy.path);
             let tried = path.into_iter().flat_map(|path| [format!("{path}/policy.toml"), path]);
             match tried.into_iter().find(|path| self.file(path).is_some()) {
-                Some(path) => self.text(&path),
+                Some(path) => {
+                    let run = path.strip_suffix("policy.toml").map(|folder| format!("{folder}run.toml"));
+                    let run = run.filter(|run| self.file(run).is_some()).map(|run| self.text(&run)).transpose()?;
+                    Ok(PolicyText { policy: self.text(&path)?, run })
+                }
                 None => {
                     let message = format!("{} has no policy '{}'", self.title(), printable(&policy.path));
                     let error = malformed("E-PACK-POLICY", message)

@@ -14,6 +14,7 @@ use super::{Capabilities, Digest, MAX_PACK_BYTES, PackName, distrusted, malforme
 use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::experiment::{Overrides, Plan};
 use engine::filter::{Catalogue, Form, Sources};
+use engine::settings::Edition;
 use insight::report::write_atomic;
 use insight::store::with_policies;
 
@@ -58,6 +59,7 @@ pub fn scaffold(name: &PackName, folder: &Path, from: Option<(&Path, Sources)>) 
         engine: VersionReq::parse(concat!(">=", env!("CARGO_PKG_VERSION"))).unwrap_or(VersionReq::STAR),
         license: "MIT".to_owned(),
         description: description(name, &said),
+        edition: Some(Edition::NEWEST.number()),
         script: own(&script)?,
         world: world.as_deref().map(own).transpose()?,
         seeds: vec![1, 2, 3],
@@ -120,12 +122,18 @@ fn collect(plan: &Plan, files: &mut Files) -> Result<Option<String>> {
     {
         files.insert(format!("robots/{}", name.to_string_lossy()), body.text.as_bytes().to_vec());
     }
-    for (member, policy) in with_policies(plan.clone())?.members.iter().zip(&plan.settings.policies) {
+    let with = with_policies(plan.clone())?;
+    let combined = with.members.iter().map(|member| (&member.source, None));
+    let texts = combined.chain(with.used.iter().map(|used| (&used.texts[0], Some(&used.texts[1]))));
+    for ((text, run), policy) in texts.zip(&plan.settings.policies) {
         let Some(path) = inside("scripts", policy.path.trim_end_matches("policy.toml")) else {
             let message = format!("the policy '{}' stands outside the pack", printable(&policy.path));
             return malformed("E-PACK-POLICY", message).help("name it by a path below the script's folder").fail();
         };
-        files.insert(format!("{path}/policy.toml"), member.source.text.as_bytes().to_vec());
+        files.insert(format!("{path}/policy.toml"), text.text.as_bytes().to_vec());
+        if let Some(run) = run {
+            files.insert(format!("{path}/run.toml"), run.text.as_bytes().to_vec());
+        }
     }
     let named = &plan.settings.world;
     Ok((named.contains('/') || named.ends_with(".toml") || *named != plan.layout.name.to_lowercase()).then_some(world))

@@ -1,6 +1,7 @@
 //! The command line: names, defaults and help, no logic.
 
 mod check;
+mod language;
 mod pack;
 mod recorded;
 mod runs;
@@ -11,6 +12,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 
 pub(crate) use check::{CheckArguments, CheckFormat};
+pub(crate) use language::{ReferenceArguments, UpgradeArguments};
 pub(crate) use pack::*;
 pub(crate) use recorded::{ExplainArguments, ReplayArguments, RescoreArguments};
 pub(crate) use runs::{CompareArguments, RunsArguments, RunsCommand};
@@ -56,8 +58,10 @@ pub(crate) enum Command {
     New(NewArguments),
     /// Share a behaviour: one signed file that carries its own evidence
     Pack(PackArguments),
-    /// Print the reference page of the script language
+    /// Print the reference page of the script language, or the language as data
     Reference(ReferenceArguments),
+    /// Write a script of an older edition for the newest one, so that it means what it meant
+    Upgrade(UpgradeArguments),
     /// Serve one native filter to an engine that runs with --isolate; nothing for people
     #[command(hide = true)]
     FilterWorker(FilterWorkerArguments),
@@ -80,6 +84,7 @@ impl Command {
             Self::Filter(arguments) => arguments.json,
             Self::Plugins(arguments) => arguments.json,
             Self::Pack(arguments) => arguments.json,
+            Self::Upgrade(arguments) => arguments.json,
             Self::New(_) | Self::Reference(_) | Self::FilterWorker(_) => false,
         }
     }
@@ -259,6 +264,9 @@ pub(crate) struct FilterArguments {
     /// PNG or JPEG files, or folders of them; at most 64 MiB and 50 megapixels each
     #[arg(required = true)]
     pub(crate) image: Vec<PathBuf>,
+    /// The view to see through, of a script that has several; the first one otherwise
+    #[arg(long, value_name = "NAME")]
+    pub(crate) view: Option<String>,
     /// The folder of a run: says which states its training met
     #[arg(long, value_name = "RUN")]
     pub(crate) run: Option<PathBuf>,
@@ -346,13 +354,6 @@ pub(crate) struct FilterWorkerArguments {
     /// Its digest
     #[arg(long, value_name = "sha256:DIGEST")]
     pub(crate) allow_native: String,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct ReferenceArguments {
-    /// Print definitions for editors (.d.rhai) instead of the page
-    #[arg(long)]
-    pub(crate) definitions: bool,
 }
 
 fn seed(text: &str) -> Result<u64, String> {

@@ -46,5 +46,6 @@ fn run(command: &Command, console: &mut Console) -> Result<u8, ConsoleError> {
         Command::New(arguments) => commands::new::run(arguments, console),
         Command::Pack(arguments) => commands::pack::run(arguments, console),
         Command::Reference(arguments) => commands::reference::run(arguments, console),
+        Command::Upgrade(arguments) => commands::upgrade::run(arguments, console),
     }
 }

@@ -27,7 +27,8 @@ pub(super) fn retest(desk: &Desk, plan: Plan, stop: &AtomicBool, files: &Mutex<F
     let seeds = &desk.settings.seeds;
     let count = if seeds.len() == 1 { "one seed".to_owned() } else { format!("{} seeds", seeds.len()) };
     let steps = plan.settings.run.test_steps;
-    desk.board.working(&format!("testing {} policies as one, {count}, {steps} steps each", plan.members.len()));
+    desk.board
+        .working(&format!("testing {} policies as one, {count}, {steps} steps each", plan.settings.policies.len()));
     let room = MOST_LEDGER_BYTES / (seeds.len() * RecordShape::of(&plan).bytes()).max(1) as u64;
     let tested = in_parallel(seeds, desk.settings.threads, |seed| {
         let SeedTest { run, lines, kept } = test_seed(&plan, seed, None, room, stop)?;

@@ -14,6 +14,7 @@ use super::{combined, findings};
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Plan, WINDOW_STEPS, in_parallel};
 use engine::script::ParamValues;
+use insight::store::{policy_files, with_policies};
 
 /// A save is often several writes; so long it must be quiet.
 const QUIET: Duration = Duration::from_millis(15);
@@ -256,7 +257,11 @@ impl Relearner {
         // A body that ships is no file.
         let body = plan.behaviour.body().map(|body| body.path.clone()).filter(|path| path.exists());
         files.lock().unwrap_or_else(PoisonError::into_inner).watch([Some(world), body].into_iter().flatten())?;
-        Ok(plan)
+        if !plan.learns() || !plan.behaviour.hands_over() {
+            return Ok(plan);
+        }
+        files.lock().unwrap_or_else(PoisonError::into_inner).watch(policy_files(&plan))?;
+        with_policies(plan)
     }
 
     /// Says what is being done, or what is wrong with the script that was saved while it is done.

@@ -32,7 +32,7 @@ pub fn base_lines(plan: &Plan, seed: u64, tested: &TestRun, stop: &AtomicBool) -
 /// # Errors
 /// As [`base_lines`].
 pub fn test_untrained(plan: &Plan, seed: u64, stop: &AtomicBool) -> Result<TestFigures> {
-    let mut chooser = Blind::new(vec![1; plan.settings.actions.len()], seed);
+    let mut chooser = Blind::new(vec![1; plan.motions().len()], seed);
     Ok(test_choices(plan, seed, stop, &mut chooser, &mut ())?.figures)
 }
 
@@ -48,7 +48,7 @@ fn best_blind(
     glance.settings.run.test_steps = plan.settings.run.test_steps.min(GLANCE_STEPS);
     let most = MOST_FAILURES.max(2.0 * tested.figures.failures_per_1000);
     let mut best: Option<BlindFigures> = None;
-    for (does, weights) in blind_robots(&plan.settings.actions, &tested.chosen) {
+    for (does, weights) in blind_robots(&plan.motions(), &tested.chosen) {
         let test = |plan: &Plan| test_choices(plan, seed, stop, &mut Blind::new(weights.clone(), seed), &mut ());
         let mut figures = test(&glance)?.figures;
         if figures.failures_per_1000 <= most {

@@ -1,6 +1,6 @@
 //! Those who choose: a learner, a frozen policy, several policies as one, a function, a record.
 
-use super::{Choice, Chooser, Disagreements, Step};
+use super::{Choice, Chooser, Disagreements, Hand, Step};
 use crate::allowed::Allowed;
 use crate::diagnostic::Result;
 use crate::learner::{Combined, Learner, Policy, Softmax, Transition};
@@ -104,5 +104,9 @@ pub(super) struct Recorded(pub Choice);
 impl Chooser for Recorded {
     fn choose(&mut self, _: &[usize], _: Allowed) -> Result<Choice> {
         Ok(self.0)
+    }
+
+    fn hand_over(&mut self, _: &Hand) -> Option<Choice> {
+        Some(self.0)
     }
 }

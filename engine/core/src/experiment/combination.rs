@@ -39,6 +39,7 @@ impl Member {
         let chain = Chain::new(&self.filters, width_px, height_px, &plan.filters)
             .map_err(|error| wrong(&error.error.message))?;
         let grid = Grid::new(&self.grid, width_px, height_px).map_err(|error| wrong(&error.0))?;
+        let grid = grid.with_period(plan.settings.run.period_s);
         let map = Box::new(GridMap::new(&self.grid, grid.clone()));
         Ok(Eyes::new(vec![chain], vec![grid], map, &plan.settings))
     }
@@ -64,6 +65,23 @@ pub(super) fn check_policies(behaviour: &Behaviour, settings: &Settings) -> Resu
         }
     }
     let combine = ["combine.way", "combine.margin", "combine.scaled"];
+    if behaviour.hands_over() {
+        for (index, policy) in settings.policies.iter().enumerate() {
+            if behaviour.knows_its_uses() && !behaviour.uses().any(|(_, used)| used == index) {
+                let name = printable(&policy.name);
+                let help = format!("write use \"{name}\" when ...; or take it out");
+                let message = format!("policy \"{name}\" is named and never used");
+                return at(&format!("policy:{index}"), message, "no use of it", &help);
+            }
+        }
+        return match combine.iter().find(|place| behaviour.place_of(place).is_some()) {
+            Some(place) => {
+                let message = "a script uses its policies one at a time or combines them, not both".to_owned();
+                at(place, message, "set here", "take this out, or the uses")
+            }
+            None => Ok(()),
+        };
+    }
     match (settings.policies.len(), combine.iter().find(|place| behaviour.place_of(place).is_some())) {
         (1, _) => at("policy:0", "one policy alone cannot be combined".to_owned(), "the only one", second),
         (0, Some(place)) => {

@@ -9,7 +9,9 @@ use crate::robot::{Ended, Robot};
 use crate::sensors::observation::{Image, Observation};
 use crate::state::{Grid, StateMap};
 
-use super::{Eyes, Plan, SeenView, Step, ViewStage};
+use super::co_driver::CoDrivers;
+use super::telling::{LaserTold, StepTold, tell};
+use super::{Eyes, Hand, Plan, SeenView, Step, ViewStage};
 use filter_api::Format;
 
 /// In a script without goals, an attempt of so many steps went well.
@@ -29,10 +31,11 @@ pub struct Cycle<R> {
     since_recovery: u64,
     /// What the judge's delayed rules have built up.
     potential: f64,
-    laser_range_m: (f64, f64),
-    laser_view_deg: f64,
+    laser: LaserTold,
     /// What guards leave of the actions now.
     leave: Leave,
+    /// The policies that the script uses.
+    co_drivers: CoDrivers,
     /// Whether the script can reach a goal.
     has_goals: bool,
     /// What the robot is told if it is to recover now.
@@ -73,7 +76,9 @@ impl<R: Robot> Cycle<R> {
         let judge = plan.judge()?;
         own.look_for(judge.looks());
         others.insert(0, own);
-        let format = match others.iter().flat_map(|eyes| &eyes.chains).all(|chain| chain.likes() == Format::Grey) {
+        let co_drivers = CoDrivers::new(plan)?;
+        let grey = others.iter().flat_map(|eyes| &eyes.chains).all(|chain| chain.likes() == Format::Grey);
+        let format = match grey && co_drivers.like_grey() {
             true => Format::Grey,
             false => Format::Rgb,
         };
@@ -83,18 +88,18 @@ impl<R: Robot> Cycle<R> {
             states: vec![0; others.len()],
             eyes: others,
             judge,
-            actions: settings.actions.clone(),
+            actions: plan.motions(),
             observation: Observation::asking_for(format, width_px, height_px, settings.laser.beams as usize),
             steps: 0,
             since_recovery: 0,
             potential: 0.0,
-            laser_range_m: (settings.laser.min_range_m, settings.laser.max_range_m),
-            laser_view_deg: settings.laser.field_of_view_deg,
+            laser: LaserTold::of(&settings.laser),
             leave: Leave::default(),
+            co_drivers,
             has_goals: plan.behaviour.has_goals(),
             ended: Ended::default(),
         };
-        cycle.observation.ground = cycle.judge.reads_ground().then(Default::default);
+        cycle.observation.ground = cycle.reads_ground().then(Default::default);
         cycle.perceive()?;
         cycle.calibrate()?;
         cycle.rest()?;
@@ -132,7 +137,7 @@ impl<R: Robot> Cycle<R> {
     pub(super) fn swap_judge(&mut self, plan: &Plan) -> Result<()> {
         self.judge = plan.judge()?;
         self.eyes[0].look_for(self.judge.looks());
-        self.observation.ground = self.judge.reads_ground().then(Default::default);
+        self.observation.ground = self.reads_ground().then(Default::default);
         self.has_goals = plan.behaviour.has_goals();
         (self.potential, self.leave) = (0.0, Leave::default());
         self.calibrate()?;
@@ -141,7 +146,25 @@ impl<R: Robot> Cycle<R> {
 
     fn calibrate(&mut self) -> Result<()> {
         self.fill_facts(0, self.steps);
+        if self.steps == 0 {
+            self.co_drivers.calibrate(&self.observation)?;
+        }
         self.judge.calibrate()
+    }
+
+    fn reads_ground(&self) -> bool {
+        self.judge.reads_ground() || self.co_drivers.read_ground()
+    }
+
+    /// The learned policy that is to choose now, if a use holds.
+    #[must_use]
+    pub fn hand(&self) -> Option<Hand> {
+        self.co_drivers.hand(self.leave.allowed)
+    }
+
+    /// What the policy that is to choose now perceives: its state, and that in words.
+    pub(super) fn handed_state(&self) -> Option<(usize, String)> {
+        self.co_drivers.described()
     }
 
     /// What a script remembers begins with the robot at rest.
@@ -152,6 +175,7 @@ impl<R: Robot> Cycle<R> {
             self.judge.take()?;
             self.compose();
             self.leave = self.judge.leave();
+            self.co_drivers.ask(self.judge.driver(), &self.observation, None)?;
         }
         Ok(())
     }
@@ -173,6 +197,11 @@ impl<R: Robot> Cycle<R> {
     #[must_use]
     pub fn states(&self) -> &[usize] {
         &self.states
+    }
+
+    /// How many things the robot can be told to do.
+    pub(super) fn motions(&self) -> usize {
+        self.actions.len()
     }
 
     /// Steps that were done.
@@ -214,6 +243,11 @@ impl<R: Robot> Cycle<R> {
         if self.judge.remembers() {
             self.compose();
             self.leave = self.judge.leave();
+            // Where the attempt ends, the uses are asked again when the robot has been put somewhere.
+            if verdict.then.is_none() {
+                let asked = self.co_drivers.ask(self.judge.driver(), &self.observation, Some(action));
+                asked.map_err(|error| at_step(error, index))?;
+            }
         }
         self.steps += 1;
         self.potential = self.judge.potential();
@@ -231,6 +265,8 @@ impl<R: Robot> Cycle<R> {
             to: verdict.to,
             entered: verdict.stage.filter(|entered| *entered != stage),
             contact: self.observation.contact,
+            driver: None,
+            hands_over: verdict.then.is_none() && self.co_drivers.drive(),
             guarded,
             next_allowed: self.leave.allowed,
         })
@@ -252,6 +288,7 @@ impl<R: Robot> Cycle<R> {
         self.judge.recovered();
         self.potential = 0.0;
         self.since_recovery = 0;
+        self.eyes.iter_mut().for_each(Eyes::forget);
         self.perceive()?;
         self.rest()
     }
@@ -268,21 +305,8 @@ impl<R: Robot> Cycle<R> {
 
     fn fill_facts(&mut self, action: usize, step: u64) {
         let twist = self.actions.get(action).copied().unwrap_or_default();
-        let facts = self.judge.facts_mut();
-        facts.ranges_m.clone_from(&self.observation.scan.ranges_m);
-        self.eyes[0].tell(&mut facts.views);
-        facts.ground = self.observation.ground.unwrap_or_default();
-        facts.state = self.states[0];
-        facts.action = action;
-        facts.action_linear_m_per_s = twist.linear_m_per_s;
-        facts.action_angular_rad_per_s = twist.angular_rad_per_s;
-        facts.contact = self.observation.contact;
-        facts.fallen = self.observation.fallen;
-        facts.linear_m_per_s = self.observation.odometry.linear_m_per_s;
-        facts.angular_rad_per_s = self.observation.odometry.angular_rad_per_s;
-        facts.step = step;
-        facts.since_recovery = self.since_recovery;
-        (facts.laser_range_m, facts.laser_view_deg) = (self.laser_range_m, self.laser_view_deg);
+        let told = StepTold { action, twist, step, since_recovery: self.since_recovery, state: self.states[0] };
+        tell(&mut self.judge, &mut self.eyes[0], &self.observation, self.laser, told);
     }
 
     /// By rule: what each added in the last step, if it fired.

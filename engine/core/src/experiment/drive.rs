@@ -9,7 +9,7 @@
 
 use std::ops::ControlFlow;
 
-use super::{Cycle, Step};
+use super::{Cycle, Hand, Step};
 use crate::allowed::Allowed;
 use crate::diagnostic::Result;
 use crate::robot::Robot;
@@ -31,6 +31,12 @@ pub trait Chooser {
     /// # Errors
     /// If there is nothing to choose: the run ends with this error.
     fn choose(&mut self, states: &[usize], allowed: Allowed) -> Result<Choice>;
+
+    /// Lets a learned policy choose that the script uses now: an action by its place among [`super::Plan::motions`]. Whoever has
+    /// none to hand over to chooses by itself.
+    fn hand_over(&mut self, _hand: &Hand) -> Option<Choice> {
+        None
+    }
 
     /// Learns from a step, before any recovery.
     fn learn(&mut self, _step: &Step) {}
@@ -79,9 +85,15 @@ pub(super) fn advance<R: Robot>(
     chooser: &mut impl Chooser,
     observer: &mut impl Observer<R>,
 ) -> Result<(Step, ControlFlow<()>)> {
-    let choice = chooser.choose(cycle.states(), cycle.allowed())?;
-    let action = cycle.instead_of(choice.action);
-    let step = Step { explored: choice.explored, ..cycle.step(action)? };
+    let handed = cycle.hand().and_then(|hand| Some((chooser.hand_over(&hand)?, hand.by)));
+    let (choice, driver) = match handed {
+        Some((choice, by)) => (choice, Some(by)),
+        None => {
+            let choice = chooser.choose(cycle.states(), cycle.allowed())?;
+            (Choice { action: cycle.instead_of(choice.action), ..choice }, None)
+        }
+    };
+    let step = Step { explored: choice.explored, driver, ..cycle.step(choice.action)? };
     chooser.learn(&step);
     let flow = observer.stepped(cycle, &step);
     Ok((step, flow))

@@ -29,10 +29,18 @@ impl ViewStage<'_> {
     }
 }
 
+/// The earlier chain that shares most of its first stages with this one, and how many.
+fn begins_alike(chains: &[Chain], index: usize) -> Option<(usize, usize)> {
+    let shared = chains[..index].iter().map(|other| chains[index].shared_with(other)).enumerate();
+    shared.filter(|(_, shared)| *shared > 0).max_by_key(|(other, shared)| (*shared, usize::MAX - other))
+}
+
 /// What turns an image into a state.
 pub struct Eyes {
     /// The chain of each view, at least one.
     pub(super) chains: Vec<Chain>,
+    /// By chain: an earlier one that begins alike, and in how many stages.
+    alike: Vec<Option<(usize, usize)>>,
     /// The grid of each view.
     pub(super) grids: Vec<Grid>,
     pub(super) map: Box<dyn StateMap>,
@@ -55,7 +63,8 @@ impl Eyes {
         let named = |view: &ViewSettings| (view.name != UNNAMED_VIEW).then(|| view.name.clone());
         let names = settings.views().map(named).take(chains.len()).collect();
         let (looks, rays) = (Vec::new(), CameraRays::new(&settings.camera));
-        Self { chains, grids, map, names, looks, finder: PatchFinder::default(), rays, width_px, height_px }
+        let alike = (0..chains.len()).map(|index| begins_alike(&chains, index)).collect();
+        Self { chains, alike, grids, map, names, looks, finder: PatchFinder::default(), rays, width_px, height_px }
     }
 
     /// These eyes with another map from what is seen to states.
@@ -77,10 +86,21 @@ impl Eyes {
     /// # Errors
     /// If a filter fails.
     pub(super) fn look(&mut self, image: &Image) -> Result<()> {
-        for (chain, grid) in self.chains.iter_mut().zip(&mut self.grids) {
-            grid.encode(chain.apply(image)?);
+        for (index, grid) in self.grids.iter_mut().enumerate() {
+            let (before, rest) = self.chains.split_at_mut(index);
+            let Some(chain) = rest.first_mut() else { break };
+            let mask = match self.alike[index].and_then(|(other, shared)| Some((before.get(other)?, shared))) {
+                Some((other, shared)) => chain.apply_after(image, other, shared)?,
+                None => chain.apply(image)?,
+            };
+            grid.encode(mask);
         }
         Ok(())
+    }
+
+    /// The robot was put somewhere: what was seen before is forgotten.
+    pub(super) fn forget(&mut self) {
+        self.grids.iter_mut().for_each(Grid::forget);
     }
 
     /// The state of the image that was looked at last, with the other parts of a state.

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::choosers::Learns;
 use super::digest::StateHash;
 use super::legs::with_gone;
+use super::relay::UsedDrivers;
 use super::trail::{Recorder, Trail};
 use super::{Cycle, Ledger, Observer, Phase, Plan, Step, Tally, WINDOW_STEPS, drive};
 use crate::diagnostic::{Diagnostic, Result};
@@ -119,6 +120,8 @@ pub struct Learning<R = SimulatedRobot, L = ShippedLearner> {
     /// The names of the rules that the tally counts, of earlier legs too.
     rules: Vec<String>,
     tally: Tally,
+    /// Policies that the script uses.
+    used: UsedDrivers,
     early: Recorder,
     hash: StateHash,
     joined: Joined,
@@ -149,6 +152,7 @@ impl<R: Robot, L: Learner> Learning<R, L> {
             early: Recorder::new(WINDOW_STEPS, cycle.robot()),
             hash: StateHash::default(),
             joined: Joined::new(plan),
+            used: UsedDrivers::new(plan, seed),
             cycle,
             fault: None,
         }
@@ -192,10 +196,14 @@ impl<R: Robot, L: Learner> Learning<R, L> {
         if self.fault.is_some() {
             return Ok(());
         }
-        let Self { seed, cycle, learner, tally, early, hash, joined, .. } = self;
+        let Self { seed, cycle, learner, used, tally, early, hash, joined, .. } = self;
         let windows = Windows { seed: *seed, tally, stop, report };
         let mut observers = ((ledger, joined), (hash, (early, windows)));
-        match drive(cycle, &mut Learns(learner), &mut observers, steps) {
+        let driven = match used.is_empty() {
+            true => drive(cycle, &mut Learns(learner), &mut observers, steps),
+            false => drive(cycle, &mut used.with(Learns(learner)), &mut observers, steps),
+        };
+        match driven {
             Ok(_) => Ok(()),
             Err(error) if cycle.steps() == 0 => Err(error),
             Err(error) => {
@@ -241,6 +249,7 @@ impl<R: Robot, L: Learner> Learning<R, L> {
     /// Ends the learning, or a leg of it: what the memory of earlier states still holds is learned too.
     #[must_use]
     pub fn finish(&mut self) -> Learned {
+        self.used.settle(&mut Learns(&mut self.learner));
         self.learner.forget();
         self.snapshot()
     }

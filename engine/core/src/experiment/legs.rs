@@ -89,7 +89,9 @@ impl Plan {
         };
         let same_world = other.layout.source.text == self.layout.source.text;
         let fixed = first_fixed_difference(&other.settings, &self.settings).map(|(what, _)| what);
+        let uses = self.behaviour.hands_over() || other.behaviour.hands_over();
         fixed
+            .or_else(|| uses.then(|| "the policies that it uses".to_owned()))
             .or_else(|| (!same_world).then(|| "the world".to_owned()))
             .or_else(|| (digests(other) != digests(self)).then(|| "the filters".to_owned()))
     }

@@ -100,10 +100,15 @@ impl Parts<'_> {
     /// The fresh grid of a view.
     pub(super) fn grid(&self, view: &ViewSettings) -> Result<Grid> {
         let (width_px, height_px) = self.image_px();
-        Grid::new(&view.grid, width_px, height_px).map_err(|error| {
-            let help = Some("use fewer rows or columns".to_owned());
-            self.point(Diagnostic::new("E-GRID", error.0), &view.place("grid.rows"), "this many rows", help)
-        })
+        let grid = Grid::new(&view.grid, width_px, height_px).map_err(|error| {
+            let without_fill = view.grid.remember_s > 0.0 && !view.grid.fill;
+            let (place, label, help) = match without_fill {
+                true => ("grid.remember_s", "asks to remember", "take it out, or leave out fill: false"),
+                false => ("grid.rows", "this many rows", "use fewer rows or columns"),
+            };
+            self.point(Diagnostic::new("E-GRID", error.0), &view.place(place), label, Some(help.to_owned()))
+        })?;
+        Ok(grid.with_period(self.settings.run.period_s))
     }
 
     /// Fresh eyes: a chain and a grid for each view, and the map.
@@ -120,7 +125,7 @@ impl Parts<'_> {
             return Ok(Box::new(GridMap::new(&view.grid, self.grid(view)?)));
         }
         let of_view = |(view, settings): (usize, &ViewSettings)| {
-            let map = GridMap::new(&settings.grid, self.grid(settings)?);
+            let map = Box::new(GridMap::new(&settings.grid, self.grid(settings)?));
             Ok(StatePart::View { name: settings.name.clone(), view, map })
         };
         let views = || self.settings.views().enumerate();
@@ -185,7 +190,7 @@ impl Parts<'_> {
     pub(super) fn judge(&self) -> Result<Judge> {
         let (run, laser, actions) = (&self.settings.run, &self.settings.laser, &self.settings.actions);
         self.behaviour.check_guards(actions)?;
-        Ok(self.behaviour.judge(run.period_s, laser.fan())?.with_actions(actions))
+        Ok(self.behaviour.judge(run.period_s, laser.fan())?.with_actions(actions, actions.len()))
     }
 
     fn point(&self, error: Diagnostic, place: &str, label: &str, help: Option<String>) -> Box<Diagnostic> {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::changes::{changed, with_params};
 use super::parts::Parts;
-use super::{Eyes, Leg, Member, outlook};
+use super::{Eyes, Leg, Member, UsedPolicy, outlook};
 use crate::diagnostic::{Diagnostic, Mistakes, Result, nearest_name, printable};
 use crate::filter::{Catalogue, Chain};
 use crate::judge::Judge;
@@ -42,6 +42,8 @@ pub struct Plan {
     pub layout: Arc<Layout>,
     /// The policies that its script combines, once they are loaded; none of a behaviour that learns.
     pub members: Vec<Member>,
+    /// The policies that its script uses, once they are loaded, in the order in which it names them.
+    pub used: Vec<Arc<UsedPolicy>>,
     /// The filters that its chain may use.
     pub filters: Arc<Catalogue>,
     /// What is learned under other rewards first; none unless the reward was swapped while the robot learned.
@@ -119,7 +121,7 @@ impl Plan {
             self.layout
         };
         let plan = Self::with_layout(behaviour, settings, layout, self.filters)?;
-        Ok(plan.with_members(self.members).after(self.earlier))
+        Ok(plan.with_members(self.members).with_used(self.used).after(self.earlier))
     }
 
     /// A plan from parts that were resolved before.
@@ -151,7 +153,8 @@ impl Plan {
             let unknown = Diagnostic::new("E-WORLD-FILE", "the script does not say which world");
             return mistakes.end().and(Err(Box::new(unknown)));
         };
-        let plan = Self { behaviour, settings, layout, members: Vec::new(), filters, earlier: Vec::new() };
+        let plan =
+            Self { behaviour, settings, layout, members: Vec::new(), used: Vec::new(), filters, earlier: Vec::new() };
         if !unread.any_of("laser") {
             let height_m = plan.layout.level_height_m(&plan.settings.robot.body);
             plan.behaviour.find_unreachable(&plan.settings.laser, height_m, &mut mistakes);
@@ -260,9 +263,13 @@ impl Plan {
         })
     }
 
-    /// Whether the behaviour learns; if not, it combines policies that were learned before.
+    /// Whether the behaviour learns; if not, policies that were learned before do all of it: combined, or one of those used
+    /// always drives.
     #[must_use]
     pub fn learns(&self) -> bool {
+        if self.behaviour.hands_over() {
+            return !self.behaviour.always_hands_over();
+        }
         self.settings.policies.is_empty()
     }
 
@@ -285,7 +292,11 @@ impl Plan {
     /// If a rule does not fit the settings, such as a beam that the laser does not have.
     pub fn judge(&self) -> Result<Judge> {
         let starts = self.layout.starts.iter().map(|start| start.name.clone()).collect();
-        Ok(self.parts().judge()?.in_world(starts))
+        let judge = self.parts().judge()?.in_world(starts);
+        if self.used.is_empty() {
+            return Ok(judge);
+        }
+        Ok(judge.with_actions(&self.motions(), self.settings.actions.len()))
     }
 }
 

@@ -157,7 +157,7 @@ impl<'a, R: Robot> Playback<'a, R> {
         let Some(record) = self.ledger.record(self.done) else { return Ok(None) };
         self.make_ready()?;
         let action = usize::from(record.action);
-        if action >= self.plan.settings.actions.len() {
+        if action >= self.cycle.motions() {
             let message = format!("step {} of the log has action {action}, which the run does not have", self.done);
             return Diagnostic::new("E-LOG-FILE", message).help("run the behaviour again").fail();
         }

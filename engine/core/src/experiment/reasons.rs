@@ -2,10 +2,11 @@
 
 use serde::Serialize;
 
-use super::{Plan, Playback};
+use super::{Cycle, Plan, Playback};
 use crate::diagnostic::Result;
 use crate::judge::{FactRead, Judge, Leave, PartRead, RuleText};
 use crate::outcome::Ending;
+use crate::robot::Robot;
 
 /// One step with its reasons.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -46,6 +47,24 @@ pub struct StepReasons {
     /// The guards that took actions away when this one was chosen.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub guards: Vec<GuardReasons>,
+    /// The use under which a learned policy chose the action; absent where the script's own choice was it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub used: Option<UseReasons>,
+}
+
+/// Why a learned policy drove.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct UseReasons {
+    /// What the script calls the policy.
+    pub name: String,
+    /// The line of the use in the script, from 1.
+    pub line: usize,
+    /// The state that the policy perceived, and that in words.
+    pub state: usize,
+    /// That state in words.
+    pub text: String,
+    /// The parts of the use's condition, as they were then; none if it always holds, or in these stages.
+    pub parts: Vec<PartReasons>,
 }
 
 /// What one guard kept from.
@@ -129,9 +148,10 @@ impl StepReasons {
         // What a guard read is known before the step alone.
         playback.seek(index)?;
         let guards = GuardReasons::all(playback.plan(), playback.cycle().judge(), playback.cycle().leave());
+        let used = UseReasons::of(playback.plan(), playback.cycle());
         let (Some(step), Some(record)) = (playback.advance()?, ledger.record(index)) else { return Ok(None) };
         let plan = playback.plan();
-        let (cycle, twist) = (playback.cycle(), plan.settings.actions[step.action]);
+        let (cycle, twist) = (playback.cycle(), plan.motions()[step.action]);
         let cells = |state: usize| {
             let described = cycle.state_map().describe(state);
             let cells = described.cells.map_or_else(Vec::new, |cells| cells.filled);
@@ -163,6 +183,7 @@ impl StepReasons {
             prey: record.prey,
             rules: rules.collect(),
             guards,
+            used: used.filter(|_| step.driver.is_some()),
         }))
     }
 }
@@ -201,6 +222,17 @@ impl PartReasons {
     }
 }
 
+impl UseReasons {
+    /// Of the use that holds now.
+    fn of<R: Robot>(plan: &Plan, cycle: &Cycle<R>) -> Option<Self> {
+        let (judge, (state, text)) = (cycle.judge(), cycle.handed_state()?);
+        let driver = judge.driver()?;
+        let (said, _) = plan.behaviour.uses().nth(driver)?;
+        let parts = judge.use_evidence(driver).into_iter().map(|part| PartReasons::of(plan, part));
+        Some(Self { name: said.name.clone(), line: said.line, state, text, parts: parts.collect() })
+    }
+}
+
 impl GuardReasons {
     /// Of the guards that hold now.
     fn all(plan: &Plan, judge: &Judge, leave: Leave) -> Vec<Self> {
@@ -210,7 +242,7 @@ impl GuardReasons {
             Self {
                 name: text.name.clone(),
                 line: text.line,
-                actions: (0..plan.settings.actions.len()).filter(|action| forbidden.contains(*action)).collect(),
+                actions: (0..plan.motions().len()).filter(|action| forbidden.contains(*action)).collect(),
                 parts: judge.guard_evidence(index).into_iter().map(|part| PartReasons::of(plan, part)).collect(),
             }
         };

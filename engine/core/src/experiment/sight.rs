@@ -6,11 +6,12 @@ use std::sync::Arc;
 use super::changes::{changed, with_params};
 use super::parts::Parts;
 use super::{Overrides, Plan};
-use crate::diagnostic::Result;
+use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
 use crate::filter::{Catalogue, Chain};
 use crate::script::Behaviour;
-use crate::settings::Settings;
-use crate::state::Grid;
+use crate::sensors::CameraRays;
+use crate::settings::{CameraSettings, Settings};
+use crate::state::{Grid, PatchFinder};
 
 /// A behaviour's filters, grid and camera.
 #[derive(Clone)]
@@ -53,10 +54,43 @@ impl Sight {
         self.parts().grid(&self.settings.view)
     }
 
-    /// Whether the behaviour learns; if not, it combines policies that see with filters of their own.
+    /// This sight with one of its views alone: the one of this name.
+    ///
+    /// # Errors
+    /// If there is no such view.
+    pub fn through(mut self, name: &str) -> Result<Self> {
+        let Some(view) = self.settings.views().find(|view| view.name == name).cloned() else {
+            let known: Vec<&str> = self.settings.views().map(|view| view.name.as_str()).collect();
+            let help = match nearest_name(name, known.iter().copied()) {
+                Some(near) => format!("did you mean '{near}'?"),
+                None => format!("it has: {}", known.join(", ")),
+            };
+            let message = format!("'{}' has no view '{}'", self.behaviour.name(), printable(name));
+            return Diagnostic::new("E-SCRIPT-VIEW", message).help(help).fail();
+        };
+        self.settings.view = view;
+        self.settings.further_views.clear();
+        Ok(self)
+    }
+
+    /// The view's patch in the image whose mask this is: its share of the image, and its bearing in degrees, positive to the
+    /// left; nothing if there is none.
+    #[must_use]
+    pub fn patch(&self, mask: &[u8]) -> Option<(f64, f64)> {
+        let CameraSettings { width_px, height_px, .. } = self.settings.camera;
+        let patch = PatchFinder::new(width_px as usize, height_px as usize).find(mask, width_px as usize);
+        let (x, y) = patch.is_seen().then(|| patch.centre())?;
+        let size = f64::from(patch.pixels) / (width_px * height_px) as f64;
+        Some((size, CameraRays::new(&self.settings.camera).bearing_deg(x, y).0))
+    }
+
+    /// Whether the behaviour has filters of its own that count; if not, it combines policies that see with theirs.
     #[must_use]
     pub fn learns(&self) -> bool {
-        self.settings.policies.is_empty()
+        match self.behaviour.hands_over() {
+            true => !self.behaviour.always_hands_over(),
+            false => self.settings.policies.is_empty(),
+        }
     }
 
     fn parts(&self) -> Parts<'_> {

@@ -30,6 +30,10 @@ pub struct Step {
     pub entered: Option<usize>,
     /// Whether the body touched something.
     pub contact: bool,
+    /// The use under which a policy that was learned before chose; nothing if the choice was the script's own.
+    pub driver: Option<usize>,
+    /// Whether a use holds at the end, so that the next choice is not the script's own.
+    pub hands_over: bool,
     /// Whether a guard took an action away when this one was chosen.
     pub guarded: bool,
     /// The actions that guards leave at the end.

@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{CombinationFigures, Learned, Plan, Tally, TestRun};
+use super::{CombinationFigures, Learned, Plan, Tally, TestRun, UseFigures};
+use crate::learner::Policy;
 use crate::stats::Sorted;
 use crate::verdict::{BaseLines, ConditionVerdict, FigureVerdict, RuleTotal, SuccessVerdict, TestFigures};
 
@@ -49,6 +50,9 @@ pub struct Summary {
     /// then: `steps` is 0, `learned_at` null, the curve empty, and rules and hash are those of the test.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub combination: Option<CombinationFigures>,
+    /// The learned policies that the script uses and how much each drove in the test; absent from a script that uses none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub uses: Vec<UseFigures>,
 }
 
 impl Summary {
@@ -72,7 +76,10 @@ impl Summary {
             starts: learned.map_or_else(Vec::new, |learned| starts_joined(plan, learned)),
             rules: rule_totals(plan, learned.map_or(&tested.tally, |learned| &learned.tally)),
             states_seen: learned.map_or_else(
-                || plan.members.iter().map(|member| member.policy.states_met()).sum(),
+                || {
+                    let used = plan.used.iter().map(|used| &used.policy);
+                    plan.members.iter().map(|member| &member.policy).chain(used).map(Policy::states_met).sum()
+                },
                 |learned| learned.policy.states_met(),
             ),
             interrupted: steps < wanted || test.steps < plan.settings.run.test_steps,
@@ -80,6 +87,7 @@ impl Summary {
             log_sha256: None,
             verdict: success.verdict(&test, lines),
             base_lines: lines.clone(),
+            uses: tested.uses.clone(),
             combination: tested.combination.as_ref().map(|combination| combination.figures.clone()),
             test,
         }

@@ -6,13 +6,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::digest::StateHash;
 use super::measured::figures;
 use super::probes::Probes;
+use super::relay::UsedDrivers;
 use super::snapshot::{Glimpse, Snapshot};
 use super::staged::Staged;
 use super::trail::{Recorder, Trail};
 use super::truth::Truth;
+use super::use_figures::UseCounts;
 use super::{
-    Chooser, CombinationFigures, Cycle, Disagreements, Frozen, Learned, Member, Observer, Phase, Plan, Step, Tally,
-    Together, WINDOW_STEPS, drive,
+    ByState, Chooser, CombinationFigures, Cycle, Disagreements, Frozen, Learned, Member, Observer, Phase, Plan, Step,
+    Tally, Together, UseFigures, WINDOW_STEPS, drive,
 };
 use crate::diagnostic::Result;
 use crate::learner::{Combined, Policy};
@@ -45,6 +47,8 @@ pub struct TestRun {
     pub chosen: Vec<u64>,
     /// Hash over every step, 64 hexadecimal digits.
     pub state_hash: String,
+    /// Of a script that uses learned policies: how much each of them drove.
+    pub uses: Vec<UseFigures>,
     /// Of several policies as one: who decided, and where they disagreed.
     pub combination: Option<CombinationTest>,
 }
@@ -111,7 +115,11 @@ pub fn test_and_watch(
     stop: &AtomicBool,
     also: &mut impl Observer<SimulatedRobot>,
 ) -> Result<TestRun> {
-    test_choices(plan, seed, stop, &mut frozen(plan, policy, seed), also)
+    let mut used = UsedDrivers::new(plan, Phase::Test.seed(seed));
+    match used.is_empty() {
+        true => test_choices(plan, seed, stop, &mut frozen(plan, policy, seed), also),
+        false => test_choices(plan, seed, stop, &mut used.with(frozen(plan, policy, seed)), also),
+    }
 }
 
 /// A policy as it chooses in the test of a seed.
@@ -141,6 +149,11 @@ fn test_combined(
     stop: &AtomicBool,
     also: &mut impl Observer<SimulatedRobot>,
 ) -> Result<TestRun> {
+    if plan.behaviour.hands_over() {
+        let mut used = UsedDrivers::new(plan, Phase::Test.seed(seed));
+        // The last use always holds: nobody else is asked.
+        return test_choices(plan, seed, stop, &mut used.with(ByState(|_| 0)), also);
+    }
     let Settings { combine, learner, run, .. } = &plan.settings;
     let policies: Vec<&Policy> = plan.members.iter().map(|member| &member.policy).collect();
     let combined = Combined::new(&policies, combine, learner);
@@ -172,8 +185,9 @@ pub fn test_robot<R: Robot>(
     let tally = Tally::new(plan.behaviour.rules().len(), run.test_steps);
     let goals_steps = Vec::with_capacity(run.test_steps.min(MOST_GOALS) as usize);
     let (mut probes, mut staged) = (Probes::new(plan, cycle.robot()), Staged::new(plan));
-    let chosen = vec![0; plan.settings.actions.len()];
-    let mut counts = Counts { tally, chosen, attempt_steps: 0, goals_steps, stop };
+    let chosen = vec![0; plan.motions().len()];
+    let used = UseCounts::new(plan);
+    let mut counts = Counts { tally, chosen, used, attempt_steps: 0, goals_steps, stop };
     let mut observers =
         (&mut hash, ((&mut truth, also), ((&mut trail, (&mut probes, &mut staged)), (&mut glimpse, &mut counts))));
     let steps = drive(cycle, chooser, &mut observers, run.test_steps)?;
@@ -181,8 +195,9 @@ pub fn test_robot<R: Robot>(
         figures(plan, steps, &counts.tally, &counts.goals_steps, truth.as_ref(), probes.finish(), staged.finish());
     let snapshot = glimpse.taken.unwrap_or_else(|| Snapshot::of(cycle));
     let (trail, state_hash) = (trail.finish(), hash.finish());
-    let Counts { tally, chosen, .. } = counts;
-    Ok(TestRun { figures, trail, snapshot, tally, chosen, state_hash, combination: None })
+    let Counts { tally, chosen, used, .. } = counts;
+    let uses = used.figures(plan);
+    Ok(TestRun { figures, trail, snapshot, tally, chosen, state_hash, combination: None, uses })
 }
 
 /// Counts, and looks at the end of every window whether to stop.
@@ -190,6 +205,7 @@ struct Counts<'a> {
     tally: Tally,
     /// By action: how often it was chosen.
     chosen: Vec<u64>,
+    used: UseCounts,
     /// Steps of the present attempt, and of each that reached its goal.
     attempt_steps: u32,
     goals_steps: Vec<u32>,
@@ -199,6 +215,7 @@ struct Counts<'a> {
 impl<R: Robot> Observer<R> for Counts<'_> {
     fn stepped(&mut self, cycle: &Cycle<R>, step: &Step) -> ControlFlow<()> {
         self.attempt_steps += 1;
+        self.used.count(step);
         if let Some(count) = self.chosen.get_mut(step.action) {
             *count += 1;
         }

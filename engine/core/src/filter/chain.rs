@@ -16,15 +16,17 @@ use crate::settings::{CONDITION, FilterSettings};
 
 /// What a camera image passes through to become a mask.
 pub struct Chain {
-    stages: Vec<Stage>,
+    pub(super) stages: Vec<Stage>,
+    /// What each stage was made from.
+    pub(super) settings: Vec<FilterSettings>,
     width_px: usize,
     height_px: usize,
 }
 
-struct Stage {
+pub(super) struct Stage {
     descriptor: &'static Descriptor,
     filter: Box<dyn Running>,
-    output: Vec<u8>,
+    pub(super) output: Vec<u8>,
 }
 
 /// Why a chain cannot be built, and which of its stages (counted from 0) is to blame.
@@ -78,7 +80,7 @@ impl Chain {
             format = descriptor.writes;
             stages.push(Stage { descriptor, filter, output: vec![0; width_px * height_px * format.channels()] });
         }
-        Ok(Self { stages, width_px, height_px })
+        Ok(Self { stages, settings: settings.to_vec(), width_px, height_px })
     }
 
     /// Everything that is wrong with a chain as it is written, before any filter is tried; in the order of the stages.
@@ -131,14 +133,23 @@ impl Chain {
     /// # Errors
     /// If the image has another size than the chain was built for, or a filter fails.
     pub fn apply(&mut self, image: &Image) -> Result<&[u8]> {
+        self.apply_from(image, 0)
+    }
+
+    /// As [`Chain::apply`], with what its first `done` stages make of the image in place already.
+    pub(super) fn apply_from(&mut self, image: &Image, done: usize) -> Result<&[u8]> {
         let (width, height) = (self.width_px, self.height_px);
         let wrong = |FilterError(words)| Box::new(Diagnostic::new("E-FILTER", format!("a filter failed: {words}")));
         let mut input = image.frame().map_err(wrong)?;
         if (input.width_px(), input.height_px()) != (width, height) {
             return Err(wrong(FilterError(format!("the image is not {width}x{height} pixels"))));
         }
-        for stage in &mut self.stages {
+        for (index, stage) in self.stages.iter_mut().enumerate() {
             let format = stage.descriptor.writes;
+            if index < done {
+                input = Frame::new(width, height, format, &stage.output).map_err(wrong)?;
+                continue;
+            }
             stage.filter.process(input, FrameMut::new(width, height, format, &mut stage.output).map_err(wrong)?)?;
             input = Frame::new(width, height, format, &stage.output).map_err(wrong)?;
         }

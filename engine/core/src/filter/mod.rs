@@ -3,6 +3,7 @@
 //! Filters come from a [`Catalogue`]: those linked in, native libraries that the user allowed, and sandboxed WebAssembly
 //! modules, all by the contract of `plugins/filter-api`. This room never knows a world, a state or a script.
 
+mod alike;
 mod catalogue;
 mod chain;
 mod condition;

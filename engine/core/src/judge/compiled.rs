@@ -8,6 +8,7 @@ use super::needs::Needs;
 use super::readings::Part;
 use super::rule::CompiledRule;
 use super::stopped::StopPlaces;
+use super::uses::CompiledUse;
 use crate::diagnostic::{Mistakes, Result, SourceText};
 use crate::settings::ScanFan;
 use rhai::{AST, Dynamic, Engine, Position, Scope};
@@ -49,6 +50,10 @@ pub(crate) struct CompiledScript {
     pub rules: Vec<CompiledRule>,
     /// What an action must never do.
     pub guards: Vec<CompiledGuard>,
+    /// When which learned policy drives.
+    pub uses: Vec<CompiledUse>,
+    /// How many are written; more than there are if some are wrong.
+    pub written_uses: usize,
     pub needs: Needs,
     /// What is worked out before the rules, in its order.
     pub remembered: Vec<Remembered>,
@@ -80,9 +85,9 @@ impl CompiledScript {
     /// Whether anything of it outlasts a step, besides how long conditions have held.
     pub(crate) fn remembers(&self) -> bool {
         let parts = !self.bins.is_empty() || !self.stages.is_empty();
-        // A guard must know the facts of a robot that was just put somewhere.
-        let has_guards = !self.guards.is_empty();
-        has_guards || self.looks_back || self.counts_way || !self.remembered.is_empty() || parts
+        // Guards and uses must know the facts of a robot that was just put somewhere.
+        let is_asked = !self.guards.is_empty() || !self.uses.is_empty();
+        is_asked || self.looks_back || self.counts_way || !self.remembered.is_empty() || parts
     }
 
     /// Checks that every beam and every bearing that is named exists.

@@ -61,12 +61,13 @@ impl Leave {
 pub(crate) struct Guarding {
     /// By guard: what it takes away.
     forbidden: Vec<Allowed>,
-    /// All actions, the slowest first: least forward speed, then least turn, either way.
+    /// The script's own actions, the slowest first: least forward speed, then least turn, either way.
     by_speed: Vec<usize>,
 }
 
 impl Guarding {
-    pub(crate) fn new(guards: &[CompiledGuard], actions: &[Twist]) -> Self {
+    /// Over these actions, the first `own` of which are the script's: one of those is always left.
+    pub(crate) fn new(guards: &[CompiledGuard], actions: &[Twist], own: usize) -> Self {
         if guards.is_empty() {
             return Self::default();
         }
@@ -74,7 +75,7 @@ impl Guarding {
             let Twist { linear_m_per_s: linear, angular_rad_per_s: angular } = actions[*action];
             (linear.abs(), angular.abs())
         };
-        let mut by_speed: Vec<usize> = (0..actions.len()).collect();
+        let mut by_speed: Vec<usize> = (0..actions.len().min(own)).collect();
         by_speed.sort_by(|a, b| {
             let ((linear, angular), (other_linear, other_angular)) = (speed(a), speed(b));
             linear.total_cmp(&other_linear).then(angular.total_cmp(&other_angular))
@@ -97,7 +98,7 @@ impl Guarding {
             }
         }
         if leave.guards != 0 && !self.by_speed.iter().any(|action| leave.allowed.contains(*action)) {
-            leave.allowed = self.by_speed.first().map_or(Allowed::ALL, |slowest| Allowed::NONE.with(*slowest));
+            leave.allowed = self.by_speed.first().map_or(Allowed::ALL, |slowest| leave.allowed.with(*slowest));
         }
         leave
     }

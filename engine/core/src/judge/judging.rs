@@ -7,6 +7,7 @@ use super::guards::{Guarding, Leave};
 use super::memory::Memory;
 use super::odometry::Odometry;
 use super::readings::{self, PartRead};
+use super::uses;
 use crate::diagnostic::{Diagnostic, Result};
 use crate::geometry::Twist;
 use crate::outcome::Destination;
@@ -92,11 +93,23 @@ impl Judge {
         }
     }
 
-    /// This judge with guards over these actions; without, they take nothing away.
+    /// This judge with guards over these actions, the first `own` of which are the script's; without, they take nothing away.
     #[must_use]
-    pub(crate) fn with_actions(mut self, actions: &[Twist]) -> Self {
-        self.guarding = Guarding::new(&self.present.compiled.guards, actions);
+    pub(crate) fn with_actions(mut self, actions: &[Twist], own: usize) -> Self {
+        self.guarding = Guarding::new(&self.present.compiled.guards, actions, own);
         self
+    }
+
+    /// The use that holds in the facts that were judged last, by its place in the script. Allocates nothing.
+    #[must_use]
+    pub(crate) fn driver(&self) -> Option<usize> {
+        uses::first_that_holds(&self.present.compiled.uses, self.stage.index, self.present.inputs())
+    }
+
+    /// What the condition of a use reads in the present facts, part by part.
+    pub(crate) fn use_evidence(&self, index: usize) -> Vec<PartRead> {
+        let parts = self.present.compiled.uses.get(index).map_or(&[][..], |one| &one.parts);
+        parts.iter().map(|part| part.evidence(self.present.inputs())).collect()
     }
 
     /// What guards leave in the facts that were judged last. Allocates nothing.

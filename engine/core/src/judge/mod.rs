@@ -25,6 +25,7 @@ pub(crate) mod rule;
 pub(crate) mod running;
 pub(crate) mod sandbox;
 pub(crate) mod stopped;
+pub(crate) mod uses;
 pub(crate) mod view_facts;
 pub(crate) mod views;
 pub(crate) mod withheld;

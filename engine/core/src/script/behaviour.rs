@@ -9,9 +9,10 @@ use crate::geometry::Twist;
 use crate::judge::compiled::CompiledScript;
 use crate::judge::memory::Remembered;
 use crate::judge::rule::CompiledRule;
+use crate::judge::uses::CompiledUse;
 use crate::judge::{Judge, RuleText, reach};
 use crate::outcome::Then;
-use crate::settings::{LaserSettings, RunSettings, ScanFan, Settings};
+use crate::settings::{Edition, LaserSettings, RunSettings, ScanFan, Settings};
 use crate::verdict::{Endable, Success, SuccessCondition};
 use std::ops::Range;
 use std::sync::Arc;
@@ -29,6 +30,7 @@ pub struct Behaviour {
     endable: Endable,
     body: Option<SourceText>,
     params: Vec<Param>,
+    edition: Edition,
 }
 
 impl Behaviour {
@@ -60,6 +62,7 @@ impl Behaviour {
             endable,
             body: None,
             params: Vec::new(),
+            edition: Edition::NEWEST,
         }
     }
 
@@ -79,6 +82,16 @@ impl Behaviour {
 
     pub(super) fn with_params(self, params: Vec<Param>) -> Self {
         Self { params, ..self }
+    }
+
+    pub(super) fn of_edition(self, edition: Edition) -> Self {
+        Self { edition, ..self }
+    }
+
+    /// The edition whose defaults it has.
+    #[must_use]
+    pub fn edition(&self) -> Edition {
+        self.edition
     }
 
     /// The numbers that may be set from outside, in their order.
@@ -185,12 +198,35 @@ impl Behaviour {
     /// # Errors
     /// For the first that does not.
     pub(crate) fn check_guards(&self, actions: &[Twist]) -> Result<()> {
-        guards::check_actions(self.source(), &self.compiled.guards, actions)
+        guards::check_actions(self.source(), &self.compiled.guards, actions, self.hands_over())
     }
 
     /// The guards in their order.
     pub fn guards(&self) -> impl Iterator<Item = &RuleText> {
         self.compiled.guards.iter().map(|guard| &guard.text)
+    }
+
+    /// The uses of learned policies in their order, each with the place of its policy among those that the script names.
+    pub fn uses(&self) -> impl Iterator<Item = (&RuleText, usize)> {
+        self.compiled.uses.iter().map(|one| (&one.text, one.policy))
+    }
+
+    /// Whether it ever hands the robot over to a policy that was learned before.
+    #[must_use]
+    pub fn hands_over(&self) -> bool {
+        self.compiled.written_uses > 0
+    }
+
+    /// Whether every use that is written is understood.
+    #[must_use]
+    pub(crate) fn knows_its_uses(&self) -> bool {
+        self.compiled.uses.len() == self.compiled.written_uses
+    }
+
+    /// Whether one of its policies always drives, so that it has nothing of its own to learn.
+    #[must_use]
+    pub fn always_hands_over(&self) -> bool {
+        self.compiled.uses.last().is_some_and(CompiledUse::is_always)
     }
 
     /// A judge for rules that may name beams that the laser does not have: these must not be judged.

@@ -18,14 +18,16 @@ use super::tree::{Tree, tree};
 use super::unread::Unread;
 use super::{
     guards, is_key, measures, memory, names, parts, rehearsal, state_parts, stops, success, syntax, top_level, types,
+    uses,
 };
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, printable};
 use crate::judge::Look;
 use crate::judge::compiled::CompiledScript;
 use crate::judge::needs::Needs;
+use crate::judge::rule::CompiledRule;
 use crate::judge::sandbox;
 use crate::judge::views::register_own;
-use crate::settings::Settings;
+use crate::settings::{Edition, PolicySettings, Settings};
 use crate::verdict::SuccessCondition;
 use rhai::{AST, Engine, Module, Scope};
 use std::path::Path;
@@ -54,17 +56,23 @@ impl Draft {
             let message = format!("'{}' has no name but dots", printable(&path.display().to_string()));
             return Diagnostic::new("E-SCRIPT-FILE", message).help("rename the file: mine.rhai").fail();
         }
-        Self::read(&name, source, &beside(path), values)
+        Self::read(&name, source, &beside(path), values, Edition::NEWEST)
     }
 
-    /// Looks for mistakes in a script's text; `name` is the behaviour's.
+    /// Looks for mistakes in a script's text; `name` is the behaviour's. `edition` is its own if it says none.
     ///
     /// # Errors
     /// As [`Draft::load`].
-    fn read(name: &str, source: SourceText, files: &BodyFiles<'_>, values: &ParamValues) -> Result<Self> {
+    pub(super) fn read(
+        name: &str,
+        source: SourceText,
+        files: &BodyFiles<'_>,
+        values: &ParamValues,
+        edition: Edition,
+    ) -> Result<Self> {
         let code = source::check_text(source)?;
         let mut mistakes = Mistakes::new(&code.source);
-        match Self::understood(name, &code, files, values, &mut mistakes) {
+        match Self::understood(name, &code, (files, edition), values, &mut mistakes) {
             Ok((behaviour, unread)) => Ok(Self { behaviour, mistakes, unread }),
             Err(last) => Err(mistakes.ended_by(last)),
         }
@@ -74,14 +82,14 @@ impl Draft {
     ///
     /// # Errors
     /// If there is a mistake.
-    fn end(self) -> Result<Behaviour> {
+    pub(super) fn end(self) -> Result<Behaviour> {
         self.mistakes.end().map(|()| self.behaviour)
     }
 
     fn understood(
         name: &str,
         code: &Code,
-        files: &BodyFiles<'_>,
+        defaults: (&BodyFiles<'_>, Edition),
         values: &ParamValues,
         mistakes: &mut Mistakes,
     ) -> std::result::Result<(Behaviour, Unread), Diagnostic> {
@@ -109,13 +117,15 @@ impl Draft {
         let params = declared.finish(code, values, mistakes);
         spoilt.spread(mistakes);
         let calls = spoilt.setup_calls(mistakes);
-        let SetUp { settings, places, mut unread, bins, body } = setup::finish(&log, code, &tree.ast, files, mistakes);
+        let SetUp { settings, places, mut unread, bins, body, edition } =
+            setup::finish(&log, code, &tree.ast, defaults, mistakes);
         calls.into_iter().for_each(|call| unread.all_of(call));
         engine.register_global_module(constants_module(&constants).into());
-        let read = ReadScript { code, tree, engine, constants, settings: &settings, needs, bins };
+        let policies = (!unread.any_of("policy")).then_some(settings.policies.as_slice());
+        let read = ReadScript { code, tree, engine, constants, settings: &settings, policies, needs, bins };
         let (compiled, outline, success) = read.compile(&mut spoilt, mistakes)?;
         let behaviour = Behaviour::new(name, settings, places, outline, compiled);
-        let behaviour = behaviour.with_success(success).with_body(body).with_params(params);
+        let behaviour = behaviour.with_success(success).with_body(body).with_params(params).of_edition(edition);
         check_with_settings(&behaviour, &mut spoilt, &unread, mistakes)?;
         Ok((behaviour, unread))
     }
@@ -128,6 +138,8 @@ struct ReadScript<'a> {
     engine: Engine,
     constants: Scope<'static>,
     settings: &'a Settings,
+    /// The policies that it names; nothing if a call that names one is wrong.
+    policies: Option<&'a [PolicySettings]>,
     needs: Needs,
     bins: Vec<WrittenBins>,
 }
@@ -139,7 +151,7 @@ impl ReadScript<'_> {
         spoilt: &mut Spoilt<'_>,
         mistakes: &mut Mistakes,
     ) -> std::result::Result<(CompiledScript, ScriptOutline, Vec<SuccessCondition>), Diagnostic> {
-        let Self { code, tree, mut engine, constants, settings, mut needs, bins } = self;
+        let Self { code, tree, mut engine, constants, settings, policies, mut needs, bins } = self;
         let mut script = vocabulary(code, &tree, settings);
         check_stages(code, &needs, &script.stages, mistakes);
         measures::check_windows(code, &tree.ast, &script.rules, &script.own, mistakes);
@@ -148,13 +160,9 @@ impl ReadScript<'_> {
         let bins = state_parts::bins(code, &tree.ast, &bins, &mut compiler, spoilt, mistakes);
         let rules = rules(code, &tree.ast, &mut compiler, spoilt, mistakes);
         let guards = guards::guards(code, &tree.ast, &mut compiler, spoilt, mistakes);
-        let reward_name = has_function(&tree.ast, "reward").then_some("reward");
-        let names = FigureNames {
-            rules: rules.iter().map(|rule| rule.text.name.as_str()).chain(reward_name).collect(),
-            stages: settings.stages.iter().map(String::as_str).collect(),
-            measures: tree.known.measures.iter().map(String::as_str).collect(),
-            own_doing: OwnDoing::of(tree.ast.statements(), &|name| code.views.group_of(name).is_some()),
-        };
+        let written_uses = uses::count(&tree.ast, Forms::of(code));
+        let uses = uses::uses(code, &tree.ast, policies, &mut compiler, spoilt, mistakes);
+        let names = figure_names(code, &tree, settings, &rules);
         let success = success::conditions(code, &tree.ast, &constants, &names, spoilt, mistakes);
         let function = |name| if has_function(&tree.ast, name) { code.function(name) } else { None };
         let (reward, calibrate) = (function("reward"), function("calibrate"));
@@ -182,6 +190,8 @@ impl ReadScript<'_> {
             rules,
             looks: looks(&needs, views.len()),
             guards,
+            uses,
+            written_uses,
             needs,
             remembered,
             views,
@@ -222,7 +232,21 @@ impl Behaviour {
     /// # Errors
     /// If anything in it, or in the file of its body, is wrong, or a value is none of its parameters or out of range.
     pub fn parse_with(name: &str, source: SourceText, bodies: &BodyFiles<'_>, values: &ParamValues) -> Result<Self> {
-        let behaviour = Draft::read(name, source, bodies, values)?.end()?;
+        Self::parse_in(Edition::NEWEST, name, source, bodies, values)
+    }
+
+    /// As [`Behaviour::parse_with`], a script that has the defaults of `edition` if it says none.
+    ///
+    /// # Errors
+    /// As [`Behaviour::parse_with`].
+    pub fn parse_in(
+        edition: Edition,
+        name: &str,
+        source: SourceText,
+        bodies: &BodyFiles<'_>,
+        values: &ParamValues,
+    ) -> Result<Self> {
+        let behaviour = Draft::read(name, source, bodies, values, edition)?.end()?;
         params::check_values(behaviour.params(), values).map(|()| behaviour)
     }
 
@@ -234,7 +258,7 @@ impl Behaviour {
         let mut all = self.param_values();
         all.extend(values.clone());
         let body = self.body().cloned();
-        Self::parse_with(self.name(), self.source().clone(), &|_| Ok(body.clone()), &all)
+        Self::parse_in(self.edition(), self.name(), self.source().clone(), &|_| Ok(body.clone()), &all)
     }
 }
 
@@ -282,6 +306,17 @@ fn vocabulary(code: &Code, tree: &Tree, settings: &Settings) -> Vocabulary {
         stages: settings.stages.clone(),
         own: tree.ast.iter_functions().map(|function| function.name.to_owned()).collect(),
         ..Vocabulary::default()
+    }
+}
+
+/// What figures of a test may be asked for by name.
+fn figure_names<'a>(code: &Code, tree: &'a Tree, settings: &'a Settings, rules: &'a [CompiledRule]) -> FigureNames<'a> {
+    let reward_name = has_function(&tree.ast, "reward").then_some("reward");
+    FigureNames {
+        rules: rules.iter().map(|rule| rule.text.name.as_str()).chain(reward_name).collect(),
+        stages: settings.stages.iter().map(String::as_str).collect(),
+        measures: tree.known.measures.iter().map(String::as_str).collect(),
+        own_doing: OwnDoing::of(tree.ast.statements(), &|name| code.views.group_of(name).is_some()),
     }
 }
 

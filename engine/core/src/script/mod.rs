@@ -11,6 +11,7 @@ mod bodies;
 mod compile;
 mod compile_facts;
 mod draft;
+mod editions;
 mod fact_names;
 mod guards;
 mod is_key;
@@ -26,6 +27,7 @@ mod parts;
 mod positions;
 mod reader;
 mod reference;
+mod reference_json;
 mod refused;
 mod rehearsal;
 mod robot_setup;
@@ -46,6 +48,8 @@ mod tree;
 mod types;
 mod unknown;
 mod unread;
+mod upgrade;
+mod uses;
 mod view_names;
 mod words;
 
@@ -57,7 +61,9 @@ pub use outline::{BeamLoop, Compared, Condition, Gathers, NamedFact, RuleOutline
 pub(crate) use params::no_param;
 pub use params::{Param, ParamValues};
 pub use reference::{definitions, reference};
+pub use reference_json::reference_json;
 pub(crate) use unread::Unread;
+pub use upgrade::{Upgrade, upgrade};
 
 #[cfg(test)]
 mod tests;

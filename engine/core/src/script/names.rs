@@ -9,6 +9,7 @@ use super::state_parts::is_bins_expr;
 use super::syntax::{Forms, is_measure_expr, is_success_expr};
 use super::tree::Tree;
 use super::unknown::Unknown;
+use super::uses::is_use_expr;
 use crate::diagnostic::{Diagnostic, Mistakes};
 use crate::judge::explain;
 use crate::judge::fact_table::takes_arguments;
@@ -163,9 +164,10 @@ impl Names<'_> {
                 if matches!(path.last(), Some(ASTNode::Expr(expr)) if is_bins_expr(expr)) {
                     return self.bins_elsewhere(*position);
                 }
-                let guard = matches!(path.last(), Some(ASTNode::Expr(expr)) if is_guard_expr(expr));
+                let is = |form: fn(&Expr) -> bool| matches!(path.last(), Some(ASTNode::Expr(expr)) if form(expr));
                 let what = match (success, measure) {
-                    _ if guard => "a guard",
+                    _ if is(is_guard_expr) => "a guard",
+                    _ if is(is_use_expr) => "a use",
                     (true, _) => "a condition of success",
                     (_, true) => "a measure",
                     _ => "a rule",

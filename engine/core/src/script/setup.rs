@@ -8,7 +8,7 @@ use super::unread::Unread;
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, printable};
 use crate::judge::explain;
 use crate::judge::views::number;
-use crate::settings::{self, CONDITION, PolicySettings, RecoverTo, Settings, Value};
+use crate::settings::{self, CONDITION, Edition, PolicySettings, RecoverTo, Settings, Value};
 use rhai::{AST, ASTNode, Dynamic, Engine, Expr, FnCallExpr, Map, Position, Stmt};
 use std::any::TypeId;
 use std::cell::OnceCell;
@@ -102,17 +102,32 @@ pub(super) struct SetUp {
     pub bins: Vec<WrittenBins>,
     /// The file of the body that is named.
     pub body: Option<SourceText>,
+    /// The edition whose defaults these are.
+    pub edition: Edition,
 }
 
 /// Ends the set-up: the settings that the calls make, over the defaults of the body that
-/// it names in `files`, or of the engine. Every call that is wrong is added to `mistakes`,
+/// it names in `files`, or of the edition: the one that it says, else `edition`. Every call that is wrong is added to `mistakes`,
 /// with its place: an unknown key, a value out of range, a setting made twice.
-pub(super) fn finish(log: &Log, code: &Code, ast: &AST, files: &BodyFiles<'_>, mistakes: &mut Mistakes) -> SetUp {
+pub(super) fn finish(
+    log: &Log,
+    code: &Code,
+    ast: &AST,
+    (files, mut edition): (&BodyFiles<'_>, Edition),
+    mistakes: &mut Mistakes,
+) -> SetUp {
     let (settings, places, unread) = (Settings::default(), SettingPlaces::new(), Unread::default());
     let (call, entries, bins) = (Position::NONE, OnceCell::new(), Vec::new());
     let body = None;
     let mut setup = SetupReader { code, ast, settings, places, unread, mistakes, call, entries, bins, body };
     let mut calls = log.close();
+    for call in calls.extract_if(.., |call| call.name == "edition") {
+        match setup.edition(&call) {
+            Ok(said) => edition = said,
+            Err(wrong) => setup.mistakes.add(*wrong),
+        }
+    }
+    setup.settings = Settings::of_edition(edition);
     for call in calls.iter().filter(|call| call.name == "robot") {
         setup.call = call.position;
         let named = call.arguments.first().filter(|name| name.is_string() && call.arguments.len() < 3);
@@ -134,7 +149,7 @@ pub(super) fn finish(log: &Log, code: &Code, ast: &AST, files: &BodyFiles<'_>, m
         setup.check_actions();
     }
     let SetupReader { settings, places, unread, bins, body, .. } = setup;
-    SetUp { settings, places, unread, bins, body: body.map(|body| body.source) }
+    SetUp { settings, places, unread, bins, body: body.map(|body| body.source), edition }
 }
 
 /// Where keys and their values stand, by call and key.

@@ -17,6 +17,11 @@ const fn row(name: &'static str, form: &'static str, purpose: &'static str) -> S
 
 /// Every set-up call.
 pub(super) const SETUP: &[SetupCall] = &[
+    row(
+        "edition",
+        "edition(2);",
+        "The edition of the language whose defaults the script has; without it the newest, in a pack that of the pack.",
+    ),
     row("world", "world(\"room\");", "The world to learn in: its name, or the path of a world file."),
     row(
         "filter",
@@ -65,7 +70,7 @@ pub(super) const SETUP: &[SetupCall] = &[
     row(
         "policy",
         "policy(\"avoid\", \"runs/avoid/1\");",
-        "A learned policy to combine: a name, and its run or its file.",
+        "A learned policy to use or to combine: a name, and its run.",
     ),
     row("combine", "combine(\"priority\", #{ margin: 0.05 });", "How two or more policies become one."),
 ];

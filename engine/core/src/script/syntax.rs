@@ -1,4 +1,4 @@
-//! The forms that the language adds to Rhai: rules, conditions of success, measures, guards.
+//! The forms that the language adds to Rhai: rules, conditions of success, measures, guards, uses.
 //!
 //! ```text
 //! rule "name" [in "stage", ...] when CONDITION [for N steps | for N seconds] [once] => VALUE [per second]
@@ -6,11 +6,13 @@
 //! success "name" when CONDITION;
 //! measure name = EXPRESSION;
 //! forbid "name" when CONDITION => CONDITION OF THE ACTION;
+//! use "policy" [in "stage", ...] [when CONDITION];
 //! ```
 
 use super::guards::next_of_forbid;
 use super::source::Code;
 use super::state_parts;
+use super::uses::next_of_use;
 use crate::outcome::Then;
 use rhai::{CustomExpr, Dynamic, Engine, Expr, ImmutableString, LexError, ParseError, Position, Stmt};
 
@@ -70,6 +72,7 @@ pub(super) struct Forms {
     pub measure: bool,
     pub bins: bool,
     pub forbid: bool,
+    pub uses: bool,
 }
 
 impl Forms {
@@ -86,6 +89,7 @@ impl Forms {
                 && code.names("bins")
                 && !code.defines("bins"),
             forbid: begins_a_statement(code, "forbid", |tail| tail.starts_with('"')),
+            uses: begins_a_statement(code, "use", |tail| tail.starts_with('"')),
         }
     }
 }
@@ -114,6 +118,9 @@ pub(super) fn register(engine: &mut Engine, forms: Forms) {
     }
     if forms.forbid {
         engine.register_custom_syntax_with_state_raw("forbid", next_of_forbid, false, |_, _, _| Ok(Dynamic::UNIT));
+    }
+    if forms.uses {
+        engine.register_custom_syntax_with_state_raw("use", next_of_use, false, |_, _, _| Ok(Dynamic::UNIT));
     }
 }
 

@@ -1,5 +1,6 @@
 //! What a script does when it runs.
 
+mod editions;
 mod errors;
 mod guards;
 mod memory;

@@ -1,4 +1,4 @@
-//! The default of every setting: the paper's robot and its way of learning.
+//! The default of every setting: the paper's robot and its way of learning. What an edition decides stands in `edition.rs`.
 
 use super::{
     BodyShape, CameraSettings, CombineSettings, CombineWay, DriveLimits, GroundSettings, LaserSettings, LearnerKind,
@@ -25,8 +25,9 @@ const PAPER_ACTIONS: [(f64, f64); 14] = [
     (0.05, -0.8),
 ];
 
-impl Default for Settings {
-    fn default() -> Self {
+impl Settings {
+    /// What is the same in every edition.
+    pub(super) fn of_every_edition() -> Self {
         Self {
             world: "room".to_owned(),
             view: ViewSettings::named(UNNAMED_VIEW),

@@ -162,6 +162,7 @@ settings! {
     grid.columns in view, "cells", Whole(1, 16), "Columns of the grid.";
     grid.occupied in view, "share", Number(0.0001, 1.0), "Share of foreground pixels from which a cell is occupied.";
     grid.fill in view, "", Flag, "Whether an occupied cell fills those above it.";
+    grid.remember_s in view, "seconds", Number(0.0, 60.0), "How long an empty column is told apart that was not empty; needs `fill`.";
     learner.kind, "", Choice(LearnerKind::WORDS), "The way of learning.";
     learner.step_size, "share", Number(0.0, 1.0), "Share of the error that is learned (alpha).";
     learner.discount, "share", Number(0.0, 1.0), "How much the next value counts (gamma).";

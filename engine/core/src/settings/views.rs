@@ -53,6 +53,7 @@ pub struct GridSettings {
     pub columns: u64,
     pub occupied: f64,
     pub fill: bool,
+    pub remember_s: f64,
 }
 
 /// A part of a state.
@@ -73,7 +74,7 @@ impl ViewSettings {
     /// A view with the default chain and the default grid.
     #[must_use]
     pub fn named(name: &str) -> Self {
-        let grid = GridSettings { rows: 3, columns: 3, occupied: 0.015, fill: true };
+        let grid = GridSettings { rows: 3, columns: 3, occupied: 0.015, fill: true, remember_s: 0.0 };
         Self { name: name.to_owned(), filters: Vec::new(), grid }
     }
 

@@ -12,7 +12,7 @@ pub enum StatePart {
         /// Its place among the grids.
         view: usize,
         /// Its map.
-        map: GridMap,
+        map: Box<GridMap>,
     },
     /// A small number, by its place in [`Percept::digits`].
     Digit {
@@ -171,7 +171,7 @@ mod tests {
     use crate::state::Grid;
 
     fn grid() -> (GridSettings, Grid) {
-        let settings = GridSettings { rows: 2, columns: 2, occupied: 0.5, fill: true };
+        let settings = GridSettings { rows: 2, columns: 2, occupied: 0.5, fill: true, remember_s: 0.0 };
         let grid = Grid::new(&settings, 4, 4).unwrap();
         (settings, grid)
     }
@@ -181,7 +181,7 @@ mod tests {
         let labels = |labels: &[&str]| labels.iter().map(|label| (*label).to_owned()).collect::<Vec<String>>();
         let stages = labels(&["search", "dock", "leave"]);
         ComposedMap::new(vec![
-            StatePart::View { name: "red".to_owned(), view: 0, map: GridMap::new(&settings, grid) },
+            StatePart::View { name: "red".to_owned(), view: 0, map: Box::new(GridMap::new(&settings, grid)) },
             StatePart::Digit {
                 name: "laser.front".to_owned(),
                 digit: 0,

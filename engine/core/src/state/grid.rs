@@ -9,7 +9,10 @@
 //!   | 6 | 7 | 8 |
 //!   +---+---+---+   state = h(left) + 4 h(middle) + 16 h(right), 64 states
 //! ```
+//!
+//! A grid that remembers has one more height, rows + 1: *gone*, of a column that is empty now and was not a while ago.
 
+use super::column_memory::ColumnMemory;
 use crate::settings::GridSettings;
 use dispatch::{Processor, compiled_for_each_processor};
 
@@ -22,6 +25,9 @@ pub struct Grid {
     rows: usize,
     columns: usize,
     fill: bool,
+    /// Values of a digit: heights of a column, or 2.
+    base: usize,
+    memory: ColumnMemory,
     width_px: usize,
     /// First pixel row of each grid row, and the image's height.
     row_edges: Vec<usize>,
@@ -50,7 +56,12 @@ impl Grid {
     /// If it would have more than [`MAX_STATES`] states, or a cell without pixels.
     pub fn new(settings: &GridSettings, width_px: usize, height_px: usize) -> Result<Self, GridError> {
         let (rows, columns) = (settings.rows as usize, settings.columns as usize);
-        let (base, digits) = if settings.fill { (rows + 1, columns) } else { (2, rows * columns) };
+        let remembers = settings.remember_s > 0.0;
+        if remembers && !settings.fill {
+            return Err(GridError("a grid without fill has no columns to remember: remember_s needs fill".to_owned()));
+        }
+        let heights = rows + 1 + usize::from(remembers);
+        let (base, digits) = if settings.fill { (heights, columns) } else { (2, rows * columns) };
         let states = u32::try_from(digits).ok().and_then(|digits| base.checked_pow(digits));
         let Some(states) = states.filter(|states| *states <= MAX_STATES) else {
             return Err(GridError(format!(
@@ -72,6 +83,8 @@ impl Grid {
             rows,
             columns,
             fill: settings.fill,
+            base,
+            memory: ColumnMemory::new(settings.remember_s, columns),
             width_px,
             row_edges,
             column_edges,
@@ -103,8 +116,25 @@ impl Grid {
         for ((occupied, count), least) in self.occupied.iter_mut().zip(&self.counts).zip(&self.least) {
             *occupied = count >= least;
         }
-        self.state = self.code();
+        self.state = self.memory.with_gone(self.code(), self.base);
         self.state
+    }
+
+    /// This grid where a step takes so long, which says for how many steps it remembers.
+    #[must_use]
+    pub(crate) fn with_period(mut self, period_s: f64) -> Self {
+        self.memory.set_period(period_s);
+        self
+    }
+
+    /// Whether it remembers anything.
+    pub(crate) fn remembers(&self) -> bool {
+        self.memory.is_on()
+    }
+
+    /// The robot was put somewhere: nothing was there a while ago.
+    pub(crate) fn forget(&mut self) {
+        self.memory.forget();
     }
 
     /// The state of the last mask.
@@ -120,7 +150,7 @@ impl Grid {
         let height = |column: usize| {
             (0..self.rows).rev().find(|row| self.occupied[row * self.columns + column]).map_or(0, |row| row + 1)
         };
-        (0..self.columns).rev().fold(0, |state, column| (self.rows + 1) * state + height(column))
+        (0..self.columns).rev().fold(0, |state, column| self.base * state + height(column))
     }
 
     fn count(&mut self, mask: &[u8]) {
@@ -160,7 +190,7 @@ impl Grid {
     /// The state of the mirror image, left for right.
     #[must_use]
     pub(super) fn mirrored(&self, state: usize) -> usize {
-        let base = if self.fill { self.rows + 1 } else { 2 };
+        let base = self.base;
         let digits = if self.fill { 1 } else { self.rows };
         let line = base.pow(self.columns as u32);
         let reversed = |line: usize| {
@@ -177,10 +207,12 @@ impl Grid {
         let mut rest = state;
         if self.fill {
             for column in 0..self.columns {
-                for row in 0..rest % (self.rows + 1) {
+                // What is gone fills nothing.
+                let height = Some(rest % self.base).filter(|height| *height <= self.rows);
+                for row in 0..height.unwrap_or(0) {
                     cells[row * self.columns + column] = true;
                 }
-                rest /= self.rows + 1;
+                rest /= self.base;
             }
         } else {
             for cell in &mut cells {
@@ -220,7 +252,7 @@ mod tests {
     use super::*;
 
     fn grid(rows: u64, columns: u64, fill: bool) -> Grid {
-        Grid::new(&GridSettings { rows, columns, occupied: 0.25, fill }, 6, 6).unwrap()
+        Grid::new(&GridSettings { rows, columns, occupied: 0.25, fill, remember_s: 0.0 }, 6, 6).unwrap()
     }
 
     fn mask(cells: &[(usize, usize)]) -> Vec<u8> {
@@ -262,7 +294,7 @@ mod tests {
     #[test]
     fn a_cell_is_occupied_from_its_share_of_pixels_on() {
         // A cell has 4 pixels: a share of 0.25 is one pixel, of 0.26 two.
-        let settings = GridSettings { rows: 3, columns: 3, occupied: 0.26, fill: true };
+        let settings = GridSettings { rows: 3, columns: 3, occupied: 0.26, fill: true, remember_s: 0.0 };
         let mut grid = Grid::new(&settings, 6, 6).unwrap();
         assert_eq!(grid.encode(&mask(&[(0, 0)])), 0);
         let mut two = mask(&[(0, 0)]);
@@ -298,7 +330,8 @@ mod tests {
 
     #[test]
     fn sizes_that_do_not_divide_share_the_pixels_out() {
-        let grid = Grid::new(&GridSettings { rows: 3, columns: 3, occupied: 0.1, fill: true }, 7, 5).unwrap();
+        let grid =
+            Grid::new(&GridSettings { rows: 3, columns: 3, occupied: 0.1, fill: true, remember_s: 0.0 }, 7, 5).unwrap();
         assert_eq!((0..9).map(|cell| grid.area_px(cell)).sum::<usize>(), 35);
     }
 
@@ -320,16 +353,18 @@ mod tests {
 
     #[test]
     fn cells_of_more_than_255_rows_are_counted_in_full() {
-        let mut grid = Grid::new(&GridSettings { rows: 1, columns: 2, occupied: 0.1, fill: true }, 3, 600).unwrap();
+        let mut grid =
+            Grid::new(&GridSettings { rows: 1, columns: 2, occupied: 0.1, fill: true, remember_s: 0.0 }, 3, 600)
+                .unwrap();
         grid.encode(&[255, 255, 0].repeat(600));
         assert_eq!(grid.counts(), [600, 600]);
     }
 
     #[test]
     fn too_many_states_are_refused_before_memory_is_taken() {
-        let large = GridSettings { rows: 16, columns: 16, occupied: 0.1, fill: false };
+        let large = GridSettings { rows: 16, columns: 16, occupied: 0.1, fill: false, remember_s: 0.0 };
         assert!(Grid::new(&large, 160, 120).unwrap_err().0.contains("2^256 states"));
-        let eight_by_four = GridSettings { rows: 4, columns: 8, occupied: 0.1, fill: true };
+        let eight_by_four = GridSettings { rows: 4, columns: 8, occupied: 0.1, fill: true, remember_s: 0.0 };
         assert_eq!(Grid::new(&eight_by_four, 160, 120).unwrap().states(), 390_625);
     }
 }

@@ -28,6 +28,7 @@ impl GridMap {
             columns: whole("columns").ok_or("columns")?,
             occupied: table.get("occupied").and_then(toml::Value::as_float).ok_or("occupied")?,
             fill: table.get("fill").and_then(toml::Value::as_bool).ok_or("fill")?,
+            remember_s: table.get("remember_s").and_then(toml::Value::as_float).unwrap_or(0.0),
         })
     }
 }
@@ -44,14 +45,20 @@ impl StateMap for GridMap {
     /// With column fill one digit for each column: its height. Without, one for each cell.
     fn digits(&self) -> Vec<Digit> {
         let (rows, columns) = self.grid.size();
-        let (values, count) = if self.settings.fill { (rows + 1, columns) } else { (2, rows * columns) };
+        let heights = rows + 1 + usize::from(self.grid.remembers());
+        let (values, count) = if self.settings.fill { (heights, columns) } else { (2, rows * columns) };
         vec![Digit { part: 0, values }; count]
     }
 
     fn describe(&self, state: usize) -> Described {
         let (rows, columns) = self.grid.size();
         let filled = self.grid.cells(state);
-        let height = |column: usize| (0..rows).filter(|row| filled[row * columns + column]).count().to_string();
+        let base = rows + 2;
+        let is_gone = |column: usize| self.grid.remembers() && state / base.pow(column as u32) % base == rows + 1;
+        let height = |column: usize| match is_gone(column) {
+            true => "gone".to_owned(),
+            false => (0..rows).filter(|row| filled[row * columns + column]).count().to_string(),
+        };
         let text = format!("columns {}", (0..columns).map(height).collect::<Vec<_>>().join(" "));
         Described { text, cells: Some(Cells { rows, columns, filled }) }
     }
@@ -61,12 +68,15 @@ impl StateMap for GridMap {
     }
 
     fn to_table(&self) -> toml::Table {
-        let GridSettings { rows, columns, occupied, fill } = self.settings;
+        let GridSettings { rows, columns, occupied, fill, remember_s } = self.settings;
         let mut table = toml::Table::new();
         table.insert("rows".to_owned(), toml::Value::Integer(rows as i64));
         table.insert("columns".to_owned(), toml::Value::Integer(columns as i64));
         table.insert("occupied".to_owned(), toml::Value::Float(occupied));
         table.insert("fill".to_owned(), toml::Value::Boolean(fill));
+        if remember_s > 0.0 {
+            table.insert("remember_s".to_owned(), toml::Value::Float(remember_s));
+        }
         table
     }
 }
@@ -76,7 +86,7 @@ mod tests {
     use super::*;
 
     fn map(fill: bool) -> GridMap {
-        let settings = GridSettings { rows: 3, columns: 2, occupied: 0.25, fill };
+        let settings = GridSettings { rows: 3, columns: 2, occupied: 0.25, fill, remember_s: 0.0 };
         GridMap::new(&settings, Grid::new(&settings, 6, 6).unwrap())
     }
 

@@ -3,6 +3,7 @@
 //! [`StateMap`] is the door; [`GridMap`], the paper's grid, is what ships. This room sees images and masks, never a world,
 //! a pose or a scan: the state cannot cheat.
 
+mod column_memory;
 mod composed;
 mod grid;
 mod grid_map;

@@ -113,6 +113,12 @@ fn lines(before: &str, after: &str) -> Vec<LineChange> {
     changed.collect()
 }
 
+/// Two scripts as one text: the lines that differ with three around them, `-` before and `+` after.
+#[must_use]
+pub fn script_diff(before: &str, after: &str) -> String {
+    TextDiff::from_lines(before, after).unified_diff().context_radius(3).to_string()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -13,7 +13,7 @@ mod side;
 mod states;
 mod statistics;
 
-pub use changes::{Changes, LineChange, SettingChange};
+pub use changes::{Changes, LineChange, SettingChange, script_diff};
 pub use figures::{ComparedFigure, FigureSide, SuccessSide};
 pub use page::{chance_words, compare_page};
 pub use side::Side;

@@ -11,7 +11,7 @@ const HELP: &str = "let a rule or 'fn reward' depend on where the actions lead: 
 /// What can be read from the script.
 pub(super) fn written(plan: &Plan, findings: &mut Vec<Finding>) {
     let (outline, actions) = (plan.behaviour.outline(), &plan.settings.actions);
-    if actions.iter().all(|action| *action == actions[0]) && plan.settings.policies.is_empty() {
+    if actions.iter().all(|action| *action == actions[0]) && plan.learns() {
         let span = plan.behaviour.place_of("actions").unwrap_or(0..0);
         let message = "all actions are the same: there is nothing to choose";
         findings.push(

@@ -86,7 +86,7 @@ fn look(plan: &Plan, threads: usize, stop: &AtomicBool) -> Result<Report> {
     let plan = &plan.clone().after(Vec::new());
     let mut findings = read(plan);
     let (mut steps, mut exploits) = (0, None);
-    if plan.settings.policies.is_empty() {
+    if plan.learns() {
         let tried = LintTrial::run(plan, threads, stop)
             .and_then(|mut trial| Ok((Exploits::find(plan, &mut trial, threads, stop)?, trial)));
         match tried {

@@ -51,7 +51,7 @@ fn blind_starts(plan: &Plan, findings: &mut Vec<Finding>) {
 /// Why a setting has no effect, and what to do about it.
 fn idle(plan: &Plan, name: &str) -> Option<(String, &'static str)> {
     let (settings, outline) = (&plan.settings, plan.behaviour.outline());
-    let (learner, combines) = (&settings.learner, !settings.policies.is_empty());
+    let (learner, combines) = (&settings.learner, !plan.learns());
     let reads_laser = outline.groups.iter().any(|group| group == "laser");
     let (group, key) = name.split_once('.')?;
     let kind = |kinds: &[LearnerKind]| kinds.contains(&learner.kind);

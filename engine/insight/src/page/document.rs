@@ -62,6 +62,9 @@ pub struct Document {
     pub scan: ScanShape,
     /// The rules in their order, `fn reward` last.
     pub rules: Vec<RuleView>,
+    /// The script's uses of learned policies, in their order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub uses: Vec<UseView>,
     /// The settings that differ from their defaults first, then the others.
     pub settings: Vec<SettingView>,
     /// The script's parameters.
@@ -97,6 +100,15 @@ pub struct RuleView {
     pub lines: usize,
     /// What it adds whenever it fires; null if that depends on the step.
     pub value: Option<f64>,
+}
+
+/// One use of a learned policy.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct UseView {
+    /// What the script calls the policy.
+    pub name: String,
+    /// Its line in the script, from 1.
+    pub line: usize,
 }
 
 /// One setting.
@@ -174,7 +186,7 @@ impl Document {
     /// # Errors
     /// If the grid cannot be made.
     pub fn without_seeds(plan: &Plan) -> Result<Self> {
-        let Settings { run, robot, actions, laser, .. } = &plan.settings;
+        let Settings { run, robot, laser, .. } = &plan.settings;
         let world = Ground::new(plan);
         let far = world.bounds_m.iter().fold(1.0, |far: f64, at| far.max(at.abs()));
         let fan = laser.fan();
@@ -196,8 +208,9 @@ impl Document {
             window_steps: WINDOW_STEPS,
             planned_steps: plan.learning_steps(),
             swaps: plan.swaps().map(|(step, table, ..)| Swap { step, table }).collect(),
-            actions: actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
+            actions: plan.motions().iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
             grid: [rows, columns],
+            uses: plan.behaviour.uses().map(|(text, _)| UseView { name: text.name.clone(), line: text.line }).collect(),
             scan: ScanShape {
                 beams: fan.beams,
                 first_rad: fan.bearing_rad(0),

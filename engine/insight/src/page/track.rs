@@ -59,6 +59,8 @@ pub struct Track {
     pub state: String,
     pub next_state: String,
     pub action: String,
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub driver: String,
     pub flags: String,
     pub reward: String,
     pub fired: String,
@@ -87,6 +89,7 @@ struct Columns {
     state: Vec<u8>,
     next_state: Vec<u8>,
     action: Vec<u8>,
+    driver: Vec<u8>,
     flags: Vec<u8>,
     reward: Vec<u8>,
     fired: Vec<u8>,
@@ -172,6 +175,9 @@ impl Columns {
         self.state.extend(record.state.to_le_bytes());
         self.next_state.extend(record.next_state.to_le_bytes());
         self.action.push(record.action as u8);
+        if source.plan.behaviour.hands_over() {
+            self.driver.push(record.driver.map_or(0, |driver| driver + 1));
+        }
         let flags = [record.then.is_some(), record.contact, record.fallen, record.explored];
         self.flags.push(flags.iter().enumerate().fold(0, |set, (bit, flag)| set | u8::from(*flag) << bit));
         self.reward.extend((record.reward as f32).to_le_bytes());
@@ -207,6 +213,7 @@ impl Columns {
             state: base64(&self.state),
             next_state: base64(&self.next_state),
             action: base64(&self.action),
+            driver: base64(&self.driver),
             flags: base64(&self.flags),
             reward: base64(&self.reward),
             fired: base64(&self.fired),
@@ -227,7 +234,8 @@ impl Track {
     /// Its approximate size in the page, bytes.
     #[must_use]
     pub(super) fn bytes(&self) -> usize {
-        let columns = [&self.x, &self.y, &self.yaw, &self.state, &self.next_state, &self.action, &self.flags];
+        let columns =
+            [&self.x, &self.y, &self.yaw, &self.state, &self.next_state, &self.action, &self.driver, &self.flags];
         let others = [&self.reward, &self.fired, &self.beam, &self.nearest_beam, &self.nearest, &self.scan];
         let movers = self.movers.iter().flat_map(|mover| [&mover.x, &mover.y, &mover.yaw]);
         columns.into_iter().chain(others).chain(movers).map(String::len).sum()

@@ -170,7 +170,7 @@ impl Tape {
         let by_rule: serde_json::Map<_, _> = (rules.iter().zip(fired))
             .filter_map(|(rule, value)| value.map(|value| (rule.name.clone(), json!(value))))
             .collect();
-        let twist = plan.settings.actions[step.action];
+        let twist = plan.motions()[step.action];
         let message = json!({
             "phase": if phase == Phase::Learning { "learning" } else { "test" },
             "step": step.index,

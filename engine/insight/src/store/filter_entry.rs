@@ -74,18 +74,28 @@ struct GridEntry {
     columns: u64,
     occupied: f64,
     fill: bool,
+    #[serde(default, skip_serializing_if = "is_off")]
+    remember_s: f64,
+}
+
+fn is_off(remember_s: &f64) -> bool {
+    *remember_s == 0.0
 }
 
 impl ViewEntry {
     pub(super) fn new(view: &ViewSettings, filters: &Catalogue) -> Self {
-        let GridSettings { rows, columns, occupied, fill } = view.grid;
+        let GridSettings { rows, columns, occupied, fill, remember_s } = view.grid;
         let filter = view.filters.iter().map(|filter| FilterEntry::new(filter, filters)).collect();
-        Self { name: view.name.clone(), grid: GridEntry { rows, columns, occupied, fill }, filter }
+        Self { name: view.name.clone(), grid: GridEntry { rows, columns, occupied, fill, remember_s }, filter }
     }
 
     pub(super) fn settings(&self) -> ViewSettings {
-        let GridEntry { rows, columns, occupied, fill } = self.grid;
+        let GridEntry { rows, columns, occupied, fill, remember_s } = self.grid;
         let filters = self.filter.iter().map(FilterEntry::settings).collect();
-        ViewSettings { name: self.name.clone(), filters, grid: GridSettings { rows, columns, occupied, fill } }
+        ViewSettings {
+            name: self.name.clone(),
+            filters,
+            grid: GridSettings { rows, columns, occupied, fill, remember_s },
+        }
     }
 }

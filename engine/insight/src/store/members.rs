@@ -2,32 +2,61 @@
 
 use std::path::{Path, PathBuf};
 
+use super::parts::RUN_FILE;
 use super::policy_file::StoredPolicy;
-use super::read_stored;
+use super::{read_stored, used};
 use engine::diagnostic::{Diagnostic, Result, SourceText, printable};
 use engine::experiment::{Member, Plan};
+
+/// What is stored of a policy.
+#[derive(Debug, Clone)]
+pub struct PolicyText {
+    /// Its `policy.toml`.
+    pub policy: SourceText,
+    /// The `run.toml` beside it, which says what robot and script it is of; nothing if there is none.
+    pub run: Option<SourceText>,
+}
+
+impl PolicyText {
+    /// A policy with nothing beside it.
+    #[must_use]
+    pub fn alone(policy: SourceText) -> Self {
+        Self { policy, run: None }
+    }
+}
 
 /// The plan with every policy that its script names, in its order; the plan itself if it learns.
 ///
 /// # Errors
 /// If one is missing or damaged, or was learned with another grid shape or other actions; each points at its call.
 pub fn with_policies(plan: Plan) -> Result<Plan> {
+    with_policies_or(plan, &|_| Ok(None))
+}
+
+/// As [`with_policies`]; `packed` gives what stands in a pack, by the path of its file or by its name where there is no file.
+///
+/// # Errors
+/// As [`with_policies`], and those of `packed`.
+pub fn with_policies_or(plan: Plan, packed: &dyn Fn(&Path) -> Result<Option<PolicyText>>) -> Result<Plan> {
     let policies = plan.settings.policies.iter().enumerate();
-    let members = policies.map(|(index, policy)| member(&plan, index, &find(&plan, index, &policy.path)?));
-    let members = members.collect::<Result<_>>()?;
-    Ok(plan.with_members(members))
+    let texts = policies.map(|(index, policy)| find(&plan, index, &policy.path, packed)).collect::<Result<_>>()?;
+    with_policy_texts(plan, texts)
 }
 
 /// The plan with policies from texts that are at hand: those that a stored run or a pack holds.
 ///
 /// # Errors
 /// As [`with_policies`], and if there are not as many texts as policies.
-pub fn with_policy_texts(plan: Plan, texts: &[SourceText]) -> Result<Plan> {
+pub fn with_policy_texts(plan: Plan, texts: Vec<PolicyText>) -> Result<Plan> {
     if texts.len() != plan.settings.policies.len() {
         let message = format!("the run holds {} of {} policies", texts.len(), plan.settings.policies.len());
         return Diagnostic::new("E-RUN-FILE", message).help("run the behaviour again").fail();
     }
-    let members = texts.iter().enumerate().map(|(index, text)| member(&plan, index, text)).collect::<Result<_>>()?;
+    if plan.behaviour.hands_over() {
+        return used::with_used(plan, texts);
+    }
+    let texts = texts.iter().enumerate();
+    let members = texts.map(|(index, text)| member(&plan, index, &text.policy)).collect::<Result<_>>()?;
     Ok(plan.with_members(members))
 }
 
@@ -81,16 +110,33 @@ fn first_file(tried: &[PathBuf]) -> Option<&PathBuf> {
 }
 
 /// The text of a policy: its path is meant from the script or, if it is not there, from where the user stands.
-fn find(plan: &Plan, index: usize, path: &str) -> Result<SourceText> {
+fn find(
+    plan: &Plan,
+    index: usize,
+    path: &str,
+    packed: &dyn Fn(&Path) -> Result<Option<PolicyText>>,
+) -> Result<PolicyText> {
     let folder = plan.behaviour.source().path.parent().unwrap_or(Path::new(""));
     let tried = tried(folder, path);
-    let Some(found) = first_file(&tried) else {
+    let found = first_file(&tried);
+    if found.is_none_or(|found| found.extension().is_some_and(|ending| ending == "pack"))
+        && let Some(text) = packed(found.map_or(Path::new(path), PathBuf::as_path))?
+    {
+        return Ok(text);
+    }
+    let Some(found) = found else {
         let name = printable(&plan.settings.policies[index].name);
         let message =
             format!("policy \"{name}\" is not there: no file '{}'", printable(&tried[1].display().to_string()));
         return Err(wrong(plan, index, message, "not found", &maker(folder, path)));
     };
-    read_stored(found).map_err(|error| wrong(plan, index, error.message, "this policy", "learn its behaviour again"))
+    let read = |path: &Path| {
+        let read = read_stored(path);
+        read.map_err(|error| wrong(plan, index, error.message, "this policy", "learn its behaviour again"))
+    };
+    let beside = found.with_file_name(RUN_FILE);
+    let run = (plan.behaviour.hands_over() && beside.is_file()).then(|| read(&beside)).transpose()?;
+    Ok(PolicyText { policy: read(found)?, run })
 }
 
 /// The command that makes a missing policy, as far as its path tells.
@@ -108,7 +154,7 @@ fn maker(scripts: &Path, path: &str) -> String {
     "make it with: engine run SCRIPT, then write the folder of that run here".to_owned()
 }
 
-fn wrong(plan: &Plan, index: usize, message: String, label: &str, help: &str) -> Box<Diagnostic> {
+pub(super) fn wrong(plan: &Plan, index: usize, message: String, label: &str, help: &str) -> Box<Diagnostic> {
     let error = Diagnostic::new("E-POLICY", message).help(help);
     Box::new(match plan.behaviour.place_of(&format!("policy:{index}")) {
         Some(span) => error.at(plan.behaviour.source(), span, label),

@@ -42,6 +42,8 @@ struct PolicyFile {
     occupied: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     fill: Option<bool>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    remember_s: Option<f64>,
     states: usize,
     /// Forward speed in m/s and turning speed in rad/s.
     actions: Vec<[f64; 2]>,
@@ -128,6 +130,7 @@ fn text_of(
         columns: grid.as_ref().map(|grid| grid.columns),
         occupied: grid.as_ref().map(|grid| grid.occupied),
         fill: grid.as_ref().map(|grid| grid.fill),
+        remember_s: grid.as_ref().map(|grid| grid.remember_s).filter(|seconds| *seconds > 0.0),
         states: policy.rows().len(),
         actions: settings.actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
         filter,
@@ -152,7 +155,8 @@ impl StoredPolicy {
         }
         let file: PolicyFile = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
         let whole = |rows, columns, occupied, fill| {
-            Some(GridSettings { rows: rows?, columns: columns?, occupied: occupied?, fill: fill? })
+            let remember_s = file.remember_s.unwrap_or(0.0);
+            Some(GridSettings { rows: rows?, columns: columns?, occupied: occupied?, fill: fill?, remember_s })
         };
         let own = whole(file.rows, file.columns, file.occupied, file.fill);
         let first = file.view.first().map(ViewEntry::settings);
@@ -200,6 +204,10 @@ impl StoredPolicy {
         }
         if own.fill != grid.fill {
             return Err([fill(own.fill), fill(grid.fill)]);
+        }
+        if own.remember_s != grid.remember_s {
+            let remembers = |seconds: f64| format!("a grid that remembers for {seconds} s");
+            return Err([remembers(own.remember_s), remembers(grid.remember_s)]);
         }
         let (own_parts, parts) = (&self.parts, &parts_of(map));
         if own_parts != parts {

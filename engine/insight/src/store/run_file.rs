@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use toml::Table;
 
 use super::filter_entry::{FilterEntry, ViewEntry};
-use super::members::with_policy_texts;
+use super::members::{PolicyText, with_policy_texts};
 use super::parts::{RUN_FILE, check_parts};
 use super::policy_file::{POLICY_FILE, policy_of_run};
 use super::{read_stored, toml_error};
@@ -18,7 +18,7 @@ use engine::filter::Catalogue;
 use engine::geometry::Twist;
 use engine::learner::Carry;
 use engine::script::{Behaviour, ParamValues};
-use engine::settings::{SETTINGS, Settings, Value, ViewSettings, apply};
+use engine::settings::{Edition, SETTINGS, Settings, Value, ViewSettings, apply};
 use engine::world::Layout;
 
 const FORMAT: u32 = 1;
@@ -35,6 +35,9 @@ struct RunFile {
     format: u32,
     engine: String,
     behaviour: String,
+    /// The edition whose defaults the script has; a run of version 0.1 does not say it.
+    #[serde(default = "first_edition")]
+    edition: u32,
     seed: u64,
     actions: Vec<[f64; 2]>,
     filters: Vec<FilterEntry>,
@@ -53,6 +56,9 @@ struct RunFile {
     /// Of a combination: the policies, in the order of the script.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     policy: Vec<TextEntry>,
+    /// The policies that the script uses, in its order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    used: Vec<UsedEntry>,
     /// What was learned before under other scripts, in order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     leg: Vec<LegEntry>,
@@ -71,12 +77,30 @@ struct LegEntry {
     script: TextEntry,
 }
 
+/// A policy that the script uses: its own `policy.toml`, and the `run.toml` of the run that learned it.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct UsedEntry {
+    policy: TextEntry,
+    run: TextEntry,
+}
+
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct TextEntry {
     path: String,
     sha256: String,
     text: String,
+}
+
+impl UsedEntry {
+    fn new([policy, run]: &[SourceText; 2]) -> Self {
+        Self { policy: TextEntry::new(policy), run: TextEntry::new(run) }
+    }
+
+    fn check(&self, file: &SourceText) -> Result<PolicyText> {
+        Ok(PolicyText { policy: self.policy.check(file)?, run: Some(self.run.check(file)?) })
+    }
 }
 
 impl TextEntry {
@@ -92,6 +116,10 @@ impl TextEntry {
         }
         Ok(SourceText::new(self.path.clone(), self.text.clone()))
     }
+}
+
+fn first_edition() -> u32 {
+    Edition::FIRST.number()
 }
 
 fn sha256(text: &str) -> String {
@@ -115,6 +143,7 @@ pub fn run_to_toml(plan: &Plan, seed: u64) -> Result<String> {
         format: format(!plan.earlier.is_empty(), !settings.further_views.is_empty()),
         engine: env!("CARGO_PKG_VERSION").to_owned(),
         behaviour: plan.behaviour.name().to_owned(),
+        edition: plan.behaviour.edition().number(),
         seed,
         actions: settings.actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
         filters: settings.view.filters.iter().map(|filter| FilterEntry::new(filter, &plan.filters)).collect(),
@@ -125,6 +154,7 @@ pub fn run_to_toml(plan: &Plan, seed: u64) -> Result<String> {
         world: TextEntry::new(&plan.layout.source),
         body: plan.behaviour.body().map(TextEntry::new),
         policy: plan.members.iter().map(|member| TextEntry::new(&member.source)).collect(),
+        used: plan.used.iter().map(|used| UsedEntry::new(&used.texts)).collect(),
         leg: legs.collect(),
     };
     toml::to_string_pretty(&file)
@@ -187,7 +217,17 @@ impl StoredRun {
     /// The run and its `run.toml`, for whoever reads log and summary too and so sees whether they belong to it.
     pub(super) fn read(folder: &Path, filters: Arc<Catalogue>) -> Result<(Self, SourceText)> {
         let source = read_stored(&folder.join(RUN_FILE))?;
-        let file: RunFile = toml::from_str(&source.text).map_err(|error| toml_error(&source, &error))?;
+        let stored = Self::parse(&source, || read_stored(&folder.join(POLICY_FILE)), filters)?;
+        Ok((stored, source))
+    }
+
+    /// A run from the texts of its files; `policy` gives that of `policy.toml`, which a run that learned nothing does not have.
+    pub(super) fn parse(
+        source: &SourceText,
+        policy: impl FnOnce() -> Result<SourceText>,
+        filters: Arc<Catalogue>,
+    ) -> Result<Self> {
+        let file: RunFile = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
         let expected = format(!file.leg.is_empty(), !file.view.is_empty());
         if file.format != expected {
             let message = format!(
@@ -199,18 +239,23 @@ impl StoredRun {
             );
             return Diagnostic::new("E-RUN-FILE", message).fail();
         }
-        let body = file.body.as_ref().map(|body| body.check(&source)).transpose()?;
+        let Some(edition) = Edition::of(file.edition) else {
+            let message =
+                format!("'{}' is of edition {}, which this engine does not know", source.path.display(), file.edition);
+            return Diagnostic::new("E-RUN-FILE", message).help("use a newer engine").fail();
+        };
+        let body = file.body.as_ref().map(|body| body.check(source)).transpose()?;
         let behaviour_of = |script: &TextEntry, params: &ParamValues| {
             // The run has the file of the one body that its script names.
             let bodies = |_: &str| Ok(body.clone());
-            Behaviour::parse_with(&file.behaviour, script.check(&source)?, &bodies, params).map(Arc::new)
+            Behaviour::parse_in(edition, &file.behaviour, script.check(source)?, &bodies, params).map(Arc::new)
         };
         let behaviour = behaviour_of(&file.script, &file.params)?;
-        let layout = Arc::new(Layout::parse(file.world.check(&source)?, &behaviour.settings().robot.body)?);
+        let layout = Arc::new(Layout::parse(file.world.check(source)?, &behaviour.settings().robot.body)?);
         let further = file.view.iter().flat_map(|view| &view.filter);
         file.filters.iter().chain(further).try_for_each(|filter| filter.check(&filters))?;
         let plan_of = |behaviour: Arc<Behaviour>, table: &Table| {
-            let settings = settings(&source, behaviour.settings(), &file, table)?;
+            let settings = settings(source, behaviour.settings(), &file, table)?;
             Plan::with_layout(behaviour, settings, Arc::clone(&layout), Arc::clone(&filters))
         };
         let plan = plan_of(behaviour, &file.settings)?;
@@ -222,20 +267,29 @@ impl StoredRun {
             let earlier = plan_of(behaviour_of(&leg.script, &leg.params)?, &leg.settings)?;
             match plan.differs_beyond_reward(&earlier) {
                 None => Ok(Leg { plan: earlier, steps: leg.steps, then: leg.table }),
-                Some(what) => Err(Box::new(not_one_run(&source, &what))),
+                Some(what) => Err(Box::new(not_one_run(source, &what))),
             }
         };
         let legs = file.leg.iter().map(leg).collect::<Result<Vec<_>>>()?;
-        let plan = plan.after(legs);
-        if plan.learns() {
-            let policy = read_stored(&folder.join(POLICY_FILE))?;
-            let decider = Decider::Learned(policy_of_run(&policy, &plan, &source)?);
-            return Ok((Self { plan, seed: file.seed, decider }, source));
-        }
-        let texts = file.policy.iter().map(|policy| policy.check(&source)).collect::<Result<Vec<_>>>()?;
-        let (plan, decider) = (with_policy_texts(plan, &texts)?, Decider::Combined);
-        Ok((Self { plan, seed: file.seed, decider }, source))
+        let combined = file.policy.iter().map(|policy| policy.check(source).map(PolicyText::alone));
+        let texts = combined.chain(file.used.iter().map(|used| used.check(source))).collect::<Result<Vec<_>>>()?;
+        let plan = with_policy_texts(plan.after(legs), texts)?;
+        let decider = match plan.learns() {
+            true => Decider::Learned(policy_of_run(&policy()?, &plan, source)?),
+            false => Decider::Combined,
+        };
+        Ok(Self { plan, seed: file.seed, decider })
     }
+}
+
+/// Whether the text of a `run.toml` holds policies that its script uses.
+pub(super) fn uses_policies(source: &SourceText) -> bool {
+    #[derive(Deserialize)]
+    struct Uses {
+        #[serde(default)]
+        used: Vec<toml::Value>,
+    }
+    toml::from_str(&source.text).is_ok_and(|Uses { used }| !used.is_empty())
 }
 
 fn not_one_run(source: &SourceText, what: &str) -> Diagnostic {

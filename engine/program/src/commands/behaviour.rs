@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use engine::diagnostic::Result;
+use engine::diagnostic::{Diagnostic, Result, SourceText};
 use engine::experiment::{Overrides, Plan};
-use insight::store::with_policies;
-use pack::{Locked, PACK_ENDING, Pack, PackName, Runnable, draft};
+use insight::store::{POLICY_FILE, PolicyText, RUN_FILE, policy_to_toml, run_to_toml, with_policies_or};
+use pack::{Evidence, Locked, PACK_ENDING, Pack, PackName, Runnable, draft};
 
 use super::pack::places::{Places, signature_of};
 use super::sources::{catalogue, sources};
@@ -22,10 +22,26 @@ pub(super) fn open(
     allow_unsigned: bool,
 ) -> Result<Runnable> {
     let runnable = open_to_look(argument, overrides, filters, allow_unsigned)?;
-    if !runnable.plan.members.is_empty() {
+    if !runnable.plan.members.is_empty() || !runnable.plan.used.is_empty() {
         return Ok(runnable);
     }
-    Ok(Runnable { plan: with_policies(runnable.plan)?, ..runnable })
+    let packed = |path: &Path| packed_policy(path, filters, allow_unsigned);
+    Ok(Runnable { plan: with_policies_or(runnable.plan, &packed)?, ..runnable })
+}
+
+/// The policy of a pack, as the run of its behaviour that it would have been learned in; nothing if there is no such pack.
+fn packed_policy(argument: &Path, filters: &FilterSources, allow_unsigned: bool) -> Result<Option<PolicyText>> {
+    let Some((pack, depends)) = open_pack(argument, allow_unsigned)? else { return Ok(None) };
+    let Runnable { plan, .. } = pack.plan(&depends, &Overrides::default(), sources(filters)?)?;
+    let Some(policy) = pack.policy(&plan)? else {
+        let message = format!("{} carries no learned policy", pack.title());
+        return Diagnostic::new("E-PACK-POLICY", message).help("name a pack that was built, or a run").fail();
+    };
+    let seed = pack.manifest().evidence.as_ref().and_then(Evidence::shown).map_or(1, |claim| claim.seed);
+    let run = run_to_toml(&plan, seed)?;
+    let policy = policy_to_toml(&plan, &policy, Some(&run))?;
+    let text = |file: &str, text: String| SourceText::new(argument.join(file), text);
+    Ok(Some(PolicyText { policy: text(POLICY_FILE, policy), run: Some(text(RUN_FILE, run)) }))
 }
 
 /// The behaviour that an argument means, without the policies that a script combines, which may not have been learned yet.

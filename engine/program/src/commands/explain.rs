@@ -5,7 +5,7 @@ use std::path::Path;
 
 use engine::diagnostic::{Diagnostic, Result, all_codes, code_page, excerpt, nearest_name, printable};
 use engine::experiment::{
-    FactReasons, GuardReasons, Phase, Plan, Playback, RuleReasons, SeenView, StepReasons, ViewStage,
+    FactReasons, GuardReasons, Phase, Plan, Playback, RuleReasons, SeenView, StepReasons, UseReasons, ViewStage,
 };
 use engine::robot::Robot;
 use insight::folder::create_folder;
@@ -129,11 +129,14 @@ fn print(console: &mut Console, plan: &Plan, report: &StepReport) -> std::result
         console.line(&format!("parameter: {} = {}", printable(&param.name), param.shown()))?;
     }
     let how = match reasons.explored {
-        _ if !plan.learns() => "",
+        _ if !plan.learns() && reasons.used.is_none() => "",
         true => " (tried, not the best one known)",
         false => " (the best one known)",
     };
     console.line(&format!("action:    {}{how}", motion(reasons.motion)))?;
+    if let Some(used) = &reasons.used {
+        print_used(console, used)?;
+    }
     print_guards(console, plan, &reasons.guards)?;
     let (_, columns) = plan.drawn_grid()?;
     let (from, to) = (icon(&reasons.state.cells, columns), icon(&reasons.next_state.cells, columns));
@@ -176,6 +179,14 @@ fn print(console: &mut Console, plan: &Plan, report: &StepReport) -> std::result
     console.line(&format!("\npictures:  {}\n           {}", report.pictures[0], report.pictures[1]))
 }
 
+/// Which learned policy chose the action, and why it did.
+fn print_used(console: &mut Console, used: &UseReasons) -> std::result::Result<(), ConsoleError> {
+    let read: Vec<&FactReasons> = used.parts.iter().flat_map(|part| &part.facts).collect();
+    let why = if read.is_empty() { String::new() } else { format!(", since {}", facts(read)) };
+    let UseReasons { name, line, state, text, .. } = used;
+    console.line(&format!("use:       \"{}\" (line {line}) drives{why}; its state {state}: {text}", printable(name)))
+}
+
 /// What guards took away when the action was chosen, and why.
 fn print_guards(console: &mut Console, plan: &Plan, guards: &[GuardReasons]) -> std::result::Result<(), ConsoleError> {
     for guard in guards {
@@ -193,7 +204,7 @@ fn print_guards(console: &mut Console, plan: &Plan, guards: &[GuardReasons]) -> 
 
 /// The actions that a guard took away, in words.
 fn forbidden(plan: &Plan, actions: &[usize]) -> String {
-    let all = &plan.settings.actions;
+    let all = plan.motions();
     let shown = actions.iter().take(4).filter_map(|action| all.get(*action));
     let shown: Vec<String> =
         shown.map(|twist| format!("[{}, {}]", twist.linear_m_per_s, twist.angular_rad_per_s)).collect();

@@ -40,6 +40,10 @@ struct SeenImage {
     coverage: f64,
     /// Share of the pixels of each cell that the filters left, row by row from the top left.
     cells: Vec<f32>,
+    /// Share of the image that the largest patch takes up.
+    size: f64,
+    /// Where it is, degrees, positive to the left; null if there is none.
+    bearing_deg: Option<f64>,
     /// What the filters left, as a PNG file of the camera's size: 255 and 0.
     mask: String,
     picture: String,
@@ -63,6 +67,7 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
         let error = Diagnostic::new("E-COMBINES", message).help("give the script of one of its policies");
         return Err(Box::new(error).into());
     }
+    let plan = through(plan, arguments)?;
     let met = arguments.run.as_deref().map(|run| met(run, &plan)).transpose()?;
     let files = photograph_files(&arguments.image)?;
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(plan.behaviour.name()).join("filter"));
@@ -81,12 +86,15 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
         let mask = out.join(format!("{name}-mask.png"));
         write_atomic(&mask, &mask_png(chain.mask(), (image.width_px, image.height_px))?)?;
         let pixels = image.width_px * image.height_px;
+        let patch = plan.patch(chain.mask());
         let seen = SeenImage {
             file: file.display().to_string(),
             state,
             columns: columns(&grid, state),
             coverage: f64::from(grid.counts().iter().sum::<u32>()) / pixels as f64,
             cells: shares(&grid),
+            size: patch.map_or(0.0, |(size, _)| size),
+            bearing_deg: patch.map(|(_, bearing_deg)| bearing_deg),
             mask: mask.display().to_string(),
             picture: out.join(format!("{name}.png")).display().to_string(),
             visits,
@@ -102,6 +110,18 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
     let alike = told_apart(&all, &grid, met.as_ref(), console)?;
     let new = met.is_some() && told_new(&all, arguments.new_share, console)?;
     Ok(u8::from(alike || new))
+}
+
+/// Through one of several views, if one is named; what training met is known of states of one view alone.
+fn through(plan: Sight, arguments: &FilterArguments) -> Result<Sight> {
+    if plan.settings.has_parts() && arguments.run.is_some() {
+        let message = "the states of this behaviour have several parts: those of one view alone were not counted";
+        return Diagnostic::new("E-POLICY-FILE", message).help("leave --run out").fail();
+    }
+    match &arguments.view {
+        Some(view) => plan.through(view),
+        None => Ok(plan),
+    }
 }
 
 /// Says how many images show states that training never met, or hardly; whether too many are new.

@@ -1,7 +1,7 @@
 //! Figures of runs and tests, for people.
 
 use engine::diagnostic::printable;
-use engine::experiment::{CombinationFigures, MemberFigures, Plan, Spread, StartJoined, Summary};
+use engine::experiment::{CombinationFigures, MemberFigures, Plan, Spread, StartJoined, Summary, UseFigures};
 use engine::verdict::{BaseLines, Because, SuccessVerdict, TestFigures};
 use insight::verdict_words::{figures, headline, learned, spread_of_figures, tells_learning};
 
@@ -35,12 +35,26 @@ pub(super) fn print_one(console: &mut Console, plan: &Plan, summary: &Summary) -
     print_verdict(console, verdict)?;
     match &summary.combination {
         Some(combination) => print_combination(console, combination)?,
+        None if !plan.learns() => console.line("learned:   nothing: a policy that is used always drives")?,
         None => console.line(&format!("learned:   {}", learned(tells_learning(plan), summary)))?,
     }
+    print_uses(console, &summary.uses)?;
     if !summary.starts.is_empty() {
         console.line(&format!("starts:    {}", starts(&summary.starts)))?;
     }
     print_figures(console, test, base_lines)
+}
+
+/// How much each policy drove that the script uses.
+pub(super) fn print_uses(console: &mut Console, uses: &[UseFigures]) -> Printed {
+    if uses.is_empty() {
+        return Ok(());
+    }
+    let one = |used: &UseFigures| {
+        let (name, drove) = (printable(&used.name), 100.0 * used.drove);
+        format!("{name} drove {drove:.0} % of the test, taking over {:.1} times in 1000 steps", used.takeovers_per_1000)
+    };
+    console.line(&format!("used:      {}", uses.iter().map(one).collect::<Vec<_>>().join("; ")))
 }
 
 /// When each start came into use.

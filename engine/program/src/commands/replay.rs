@@ -60,6 +60,9 @@ struct StepEntry {
     rules: Vec<(String, f64)>,
     recover: bool,
     explored: bool,
+    /// The learned policy that chose, where the script uses one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    used: Option<String>,
     contact: bool,
     beam: Option<u16>,
     beam_angle_deg: Option<f64>,
@@ -147,9 +150,9 @@ fn rules(plan: &Plan, phase: Phase, ledger: &Ledger) -> Vec<RuleScoreEntry> {
 }
 
 fn entry(plan: &Plan, ledger: &Ledger, step: usize) -> Option<StepEntry> {
-    let Record { state, next_state, action, reward, then, explored, contact, beam, nearest_m, pose, .. } =
+    let Record { state, next_state, action, driver, reward, then, explored, contact, beam, nearest_m, pose, .. } =
         ledger.record(step)?;
-    let twist = plan.settings.actions.get(usize::from(action))?;
+    let twist = *plan.motions().get(usize::from(action))?;
     let name = |rule: usize| plan.behaviour.rules()[rule].name.clone();
     let fan = plan.settings.laser.fan();
     Some(StepEntry {
@@ -162,6 +165,7 @@ fn entry(plan: &Plan, ledger: &Ledger, step: usize) -> Option<StepEntry> {
         rules: ledger.fired(step).map(|(rule, value)| (name(rule), value)).collect(),
         recover: then.is_some(),
         explored,
+        used: driver.and_then(|by| plan.behaviour.uses().nth(usize::from(by))).map(|(text, _)| text.name.clone()),
         contact,
         beam,
         beam_angle_deg: beam.map(|beam| fan.bearing_deg(usize::from(beam))),
@@ -214,5 +218,6 @@ fn because(step: &StepEntry) -> String {
     let beam = step.beam.zip(step.beam_angle_deg);
     let beam = beam.map_or(String::new(), |(beam, angle)| format!(", beam {beam}, {}", direction(angle)));
     let recover = if step.recover { ", then recover" } else { "" };
-    format!("{}{beam}{recover}", rules.join(" and "))
+    let used = step.used.as_ref().map_or(String::new(), |name| format!(" (use \"{}\")", printable(name)));
+    format!("{}{beam}{recover}{used}", rules.join(" and "))
 }

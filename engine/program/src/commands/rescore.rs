@@ -78,6 +78,13 @@ pub(crate) fn run(arguments: &RescoreArguments, console: &mut Console) -> std::r
         let error = Diagnostic::new("E-RESCORE", message).help("give a run that learned");
         return Err(Box::new(error).into());
     }
+    if plan.behaviour.hands_over() {
+        let message =
+            "the script of this run uses other policies: which of them drove depends on it, not on a reward alone";
+        let error =
+            Diagnostic::new("E-RESCORE", message).help("learn it anew under the other reward: engine run SCRIPT");
+        return Err(Box::new(error).into());
+    }
     if !plan.earlier.is_empty() {
         let message = "the reward of this run was swapped while it learned: there is no one reward to compare with";
         let error = Diagnostic::new("E-RESCORE", message);

@@ -12,7 +12,7 @@ use insight::store::StoredRun;
 use pack::{Evidence, Pack, Runnable};
 use serde::Serialize;
 
-use super::print::{print_combination, print_figures, print_verdict};
+use super::print::{print_combination, print_figures, print_uses, print_verdict};
 use super::sources::{catalogue, sources};
 use super::stop::{INTERRUPTED, on_ctrl_c};
 use crate::cli::TestArguments;
@@ -56,11 +56,16 @@ pub(crate) fn run(arguments: &TestArguments, console: &mut Console) -> Result<u8
     let lines = base_lines(&plan, test_seed, &tested, &stop)?;
     let verdict = plan.success().verdict(&tested.figures, &lines);
     console.json(&TestReport { figures: &tested.figures, lines: &lines, verdict: &verdict })?;
-    let how = if plan.learns() { "learned" } else { "combined" };
+    let how = match plan.behaviour.hands_over() {
+        _ if plan.learns() => "learned",
+        true => "driven by learned policies",
+        false => "combined",
+    };
     console.line(&format!("behaviour: {} in {}, {how} with seed {seed}", plan.behaviour.name(), plan.layout.name))?;
     if let Some(combination) = &tested.combination {
         print_combination(console, &combination.figures)?;
     }
+    print_uses(console, &tested.uses)?;
     print_verdict(console, &verdict)?;
     print_figures(console, &tested.figures, &lines)?;
     if stop.load(Ordering::Relaxed) {

@@ -154,6 +154,14 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          true. Two limits are two comparisons: 0.3 < laser.front && laser.front < 0.6.",
     ),
     (
+        "E-SCRIPT-USE",
+        Kind::Input,
+        "A use says something that it cannot: use \"dock\" in \"approach\" when blue.size > 0.1;\n\
+         The name is that of a policy(...) of the script; then come stages after 'in', a condition after 'when', or both. Without \
+         either the policy always drives, and nothing below it is asked. The condition is true or false and reads facts, measures, \
+         numbers and the functions of the table.",
+    ),
+    (
         "E-SCRIPT-VIEW",
         Kind::Input,
         "A view has a name that cannot be one, or a view is named that the script does not have.\n\

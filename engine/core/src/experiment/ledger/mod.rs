@@ -172,6 +172,7 @@ impl Ledger {
             state: step.state as u32,
             next_state: step.next_state as u32,
             action: step.action as u16,
+            driver: step.driver.map(|driver| driver as u8),
             then: step.then,
             to: step.to,
             contact: step.contact,

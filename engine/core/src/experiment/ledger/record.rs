@@ -47,8 +47,10 @@ pub struct Record {
     pub state: u32,
     /// The state at the end.
     pub next_state: u32,
-    /// The action.
+    /// The action, by its place among the plan's motions.
     pub action: u16,
+    /// The use under which a learned policy chose it; nothing if the script's own choice was it.
+    pub driver: Option<u8>,
     /// What the script said if the attempt ended: the next step begins somewhere else.
     pub then: Option<Then>,
     /// Where it does, if the script said so.
@@ -124,7 +126,9 @@ impl Record {
         let wide = [self.reward, self.pose.x_m, self.pose.y_m, self.pose.yaw_rad].map(f64::to_le_bytes);
         bytes[0..32].copy_from_slice(wide.as_flattened());
         bytes[32..40].copy_from_slice([self.state, self.next_state].map(u32::to_le_bytes).as_flattened());
-        let small = [self.action, flags, self.beam.unwrap_or(NO_BEAM), self.nearest_beam].map(u16::to_le_bytes);
+        // The upper byte of the action was always 0: there are at most 64.
+        let action = self.action & 0xff | self.driver.map_or(0, |driver| (u16::from(driver) + 1) << 8);
+        let small = [action, flags, self.beam.unwrap_or(NO_BEAM), self.nearest_beam].map(u16::to_le_bytes);
         bytes[40..48].copy_from_slice(small.as_flattened());
         let narrow = [self.nearest_m, self.z_m, prey[0], prey[1], prey[2], self.coverage].map(f32::to_le_bytes);
         bytes[48..72].copy_from_slice(narrow.as_flattened());
@@ -147,7 +151,8 @@ impl Record {
             prey: flag(4).then_some([x, y, yaw]),
             state: u32::from_le_bytes(states[0]),
             next_state: u32::from_le_bytes(states[1]),
-            action,
+            action: action & 0xff,
+            driver: (action >> 8).checked_sub(1).map(|driver| driver as u8),
             then: flag(0).then(|| Then::ALL[usize::from(flags >> THEN_BIT & 3)].1),
             to: destination(flags >> TO_BIT),
             contact: flag(1),

@@ -12,7 +12,7 @@ const ACTIONS: [Twist; 4] = [Twist::new(0.4, 0.0), Twist::new(0.2, 0.8), Twist::
 /// A judge of a script with a rule, over 181 beams at 2 m.
 fn judge(guards: &str) -> Judge {
     let behaviour = parse(&format!("{SET_UP}\n{guards}\n{RULE}")).unwrap_or_else(|wrong| panic!("{wrong:?}"));
-    let mut judge = behaviour.judge(0.5, super::fan(181)).unwrap().with_actions(&ACTIONS);
+    let mut judge = behaviour.judge(0.5, super::fan(181)).unwrap().with_actions(&ACTIONS, ACTIONS.len());
     judge.facts_mut().ranges_m.fill(2.0);
     judge.calibrate().unwrap();
     judge

@@ -1,7 +1,7 @@
 //! The pages and the scripts that come with the engine.
 
 use super::super::setup_table::SETUP;
-use super::super::{Behaviour, definitions, reference};
+use super::super::{Behaviour, definitions, reference, reference_json};
 use super::fan;
 use crate::judge::fact_table::FACTS;
 use crate::judge::functions::FUNCTIONS;
@@ -20,6 +20,55 @@ fn the_page_about_scripts_is_the_generated_one() {
         std::fs::write(&path, reference()).unwrap();
     }
     assert!(std::fs::read_to_string(&path).unwrap() == reference(), "run the tests with UPDATE_PAGES=1");
+}
+
+#[test]
+fn the_definitions_for_editors_are_the_generated_ones() {
+    let path = scripts().join("../docs/editor/engine.d.rhai");
+    if std::env::var_os("UPDATE_PAGES").is_some() {
+        std::fs::write(&path, definitions()).unwrap();
+    }
+    assert!(std::fs::read_to_string(&path).unwrap() == definitions(), "run the tests with UPDATE_PAGES=1");
+}
+
+#[test]
+fn the_language_as_data_holds_what_the_page_holds() {
+    let (data, page) = (reference_json(), reference());
+    let texts = |list: &str, key: &str| -> Vec<String> {
+        let rows = data[list].as_array().unwrap().iter();
+        rows.filter_map(|row| row[key].as_str().map(str::to_owned)).collect()
+    };
+    // What each row is about stands in a table of the page, and each row of its tables is about one of these.
+    let lists = ["setup_calls", "settings", "facts", "functions", "windows", "test_figures"];
+    let known: Vec<String> = lists.iter().flat_map(|list| texts(list, "about")).collect();
+    for about in &known {
+        assert!(page.contains(&format!("| {about} |")), "{about}");
+    }
+    let tables = page.split("\n## Limits").next().unwrap();
+    let heads = ["what it sets", "what it is", "what it does", "what it changes"];
+    let mut rows = 0;
+    for row in tables.lines().filter(|line| line.starts_with("| `")) {
+        let last = row.trim_end_matches(" |").rsplit(" | ").next().unwrap();
+        assert!(known.iter().any(|about| about == last) || heads.contains(&last), "{row}");
+        rows += 1;
+    }
+    assert!(rows >= 150, "{rows} rows");
+    let row = |list: &str, key: &str, name: &str| {
+        data[list].as_array().unwrap().iter().find(|row| row[key] == name).unwrap().clone()
+    };
+    let tilt = row("settings", "key", "tilt_deg");
+    assert_eq!((&tilt["least"], &tilt["greatest"], &tilt["default"]), (&(-30.0).into(), &90.0.into(), &42.0.into()));
+    let bearing = row("facts", "key", "bearing_deg");
+    assert_eq!((&bearing["unseen"], &bearing["cost"]), (&180.0.into(), &"mask".into()));
+    assert_eq!(data["editions"][0]["defaults"]["learner.kind"], "ttd");
+    assert!(texts("statements", "word").iter().any(|word| word == "use"));
+    assert!(texts("codes", "code").iter().any(|code| code == "E-SCRIPT-USE"));
+}
+
+#[test]
+fn every_statement_in_the_data_can_be_written() {
+    let words: Vec<&str> = super::super::reference_json::STATEMENTS.iter().map(|(word, ..)| *word).collect();
+    assert_eq!(words, ["rule", "success", "measure", "forbid", "use", "bins"]);
 }
 
 #[test]

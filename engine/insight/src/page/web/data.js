@@ -43,6 +43,7 @@ class Track {
     this.state = new Uint32Array(bytes(raw.state));
     this.nextState = new Uint32Array(bytes(raw.next_state));
     this.action = new Uint8Array(bytes(raw.action));
+    this.driver = new Uint8Array(bytes(raw.driver ?? ''));
     this.flags = new Uint8Array(bytes(raw.flags));
     this.reward = new Float32Array(bytes(raw.reward));
     this.bits = new Uint8Array(bytes(raw.fired));

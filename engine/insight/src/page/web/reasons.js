@@ -11,6 +11,7 @@ function showStep(doc, track, index, step) {
     ['step', `${whole(step)}, ends at ${((step + 1) * doc.period_s).toFixed(1)} s`],
     ['state', `${track.state[index]} → ${track.nextState[index]}`],
     ['action', motion(doc.actions[track.action[index]] ?? [0, 0])],
+    ...(doc.uses ? [['chosen by', doc.uses[track.driver[index] - 1]?.name ?? 'the script']] : []),
     ['reward', signed(track.reward[index])],
     ['nearest', `${(track.nearest[index] / 1000).toFixed(2)} m, ${beamWords(track.nearestBeam[index], doc.scan)}`],
     ['events', events || 'none'],
@@ -56,7 +57,8 @@ function showReasons(doc, track, index, reasons) {
     const facts = why ? why.parts.flatMap((part) => part.facts.map((fact) => factWords(fact, doc))) : [];
     return el('li', {}, chip(at), fired ? el('b', { text: rule.name }) : el('span', { class: 'quiet', text: rule.name }), ` ${words}`,
       ...[...new Set(facts)].map((fact) => el('div', { class: 'fact', text: fact })));
-  }), ...(reasons?.guards ?? []).map((guard) => el('li', { class: 'quiet',
+  }), ...(reasons?.used ? [el('li', {}, el('b', { text: `use "${reasons.used.name}"` }), ` in its state ${reasons.used.text}`,
+    ...reasons.used.parts.flatMap((part) => part.facts.map((fact) => el('div', { class: 'fact', text: factWords(fact, doc) }))))] : []), ...(reasons?.guards ?? []).map((guard) => el('li', { class: 'quiet',
     text: `${guard.name} forbade ${guard.actions.length} of ${doc.actions.length} actions` })), ...gone.map((rule) => el('li', { class: 'quiet', text: `${rule.name} ${signed(rule.added)}, in the script before the swap` }))));
 }
 

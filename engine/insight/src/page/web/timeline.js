@@ -4,6 +4,7 @@ const ROW = 13;
 const TRACE = 40;
 const FOOT = 30;
 const TOTAL = 'reward of a step';
+const DRIVES = 'who drives';
 /** A reward that is not 0 in a greater share of the steps is no rare punishment. */
 const RARE = 0.1;
 
@@ -35,19 +36,21 @@ class Timeline {
 
   drawBase(doc, track, litRule, swaps) {
     const traced = Boolean(track?.count) && speaks(doc, track);
-    const foot = doc.rules.length * ROW + (traced ? TRACE : 0) + 1;
+    const band = doc.uses ? ROW : 0;
+    const foot = doc.rules.length * ROW + band + (traced ? TRACE : 0) + 1;
     this.box.style.height = `${foot + FOOT}px`;
     const sheet = fit(this.base);
     this.frame = null;
     if (!sheet || !track || !track.count) return;
     const { pen, width } = sheet;
-    const names = [...doc.rules.map((rule) => rule.name), ...(traced ? [TOTAL] : [])];
+    const names = [...doc.rules.map((rule) => rule.name), ...(band ? [DRIVES] : []), ...(traced ? [TOTAL] : [])];
     const left = Math.min(width * 0.3, Math.max(60, ...names.map((name) => pen.measureText(name).width + 24)));
     const wide = width - left - 8;
     const steps = Math.max(track.end, 2);
     this.frame = { left, wide, steps, foot, x: (step) => left + (step / (steps - 1)) * wide };
     doc.rules.forEach((rule, at) => this.row(pen, track, rule, at, litRule));
-    if (traced) this.trace(pen, track, doc.rules.length * ROW + 1);
+    if (band) this.drivers(pen, doc, track, doc.rules.length * ROW + 1);
+    if (traced) this.trace(pen, track, doc.rules.length * ROW + band + 1);
     this.axis(pen, track, swaps);
   }
 
@@ -75,6 +78,26 @@ class Timeline {
       else pen.fillRect(Math.round(x(track.step(index))) - 0.75, y, 1.5, ROW - 3);
     }
     pen.globalAlpha = 1;
+  }
+
+  /** Who drives: a bar over the steps of each use, under its policy's name where there is room. */
+  drivers(pen, doc, track, top) {
+    const { left, wide, x } = this.frame;
+    pen.fillStyle = ink.soft;
+    pen.fillRect(left, top, wide, ROW - 3);
+    label(pen, DRIVES, 14, top + 5.5, 'left', 'middle', ink.text);
+    for (let from = 0, to = 0; from < track.count; from = to) {
+      const driver = track.driver[from];
+      while (to < track.count && track.driver[to] === driver && track.step(to) - track.step(from) === to - from) to += 1;
+      if (driver === 0) continue;
+      const [start, broad] = [x(track.step(from)), Math.max(x(track.step(to - 1)) - x(track.step(from)), 1)];
+      pen.globalAlpha = 0.35 + 0.4 * ((driver - 1) % 2);
+      pen.fillStyle = ink.accent;
+      pen.fillRect(start, top, broad, ROW - 3);
+      pen.globalAlpha = 1;
+      const { name } = doc.uses[driver - 1];
+      if (pen.measureText(name).width + 6 < broad) label(pen, name, start + 3, top + 5.5, 'left', 'middle', ink.text);
+    }
   }
 
   /** The reward of each step: in each column of pixels from the least to the greatest, and through their means. */

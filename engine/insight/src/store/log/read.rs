@@ -155,7 +155,7 @@ fn phase_records(
 
 /// A checksum can be made to fit: what is used as a number of a state, an action or a beam must be one.
 fn check_records(log: &RunLog, plan: &Plan) -> Result<()> {
-    let (states, actions) = (plan.state_map()?.states(), plan.settings.actions.len());
+    let (states, actions) = (plan.state_map()?.states(), plan.motions().len());
     let beams = plan.settings.laser.beams as usize;
     let is_possible = |record: &Record| {
         let prey = record.prey.unwrap_or_default();

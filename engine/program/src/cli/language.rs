@@ -1,0 +1,27 @@
+//! What the commands about the script language take.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+#[derive(Debug, Args)]
+pub(crate) struct ReferenceArguments {
+    /// Print definitions for editors (.d.rhai) instead of the page
+    #[arg(long)]
+    pub(crate) definitions: bool,
+    /// Print the language as data for tools (JSON) instead of the page
+    #[arg(long, conflicts_with = "definitions")]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct UpgradeArguments {
+    /// The script
+    pub(crate) script: PathBuf,
+    /// Change the file; without it the change is only shown
+    #[arg(long)]
+    pub(crate) write: bool,
+    /// Print what changes as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}

@@ -1,0 +1,56 @@
+//! Editions through the program: upgraded, stored, packed; the language as data.
+
+use serde_json::Value;
+
+use crate::support::{Bench, SCRIPT};
+
+#[test]
+fn an_upgrade_is_shown_first_and_written_on_demand() {
+    let bench = Bench::new();
+    let shown = bench.ok(&["upgrade", "short.rhai"]);
+    for line in ["+edition(2);", "+learner(#{ kind: \"ttd\" });", "=> -1 then fail;", "nothing is written yet"] {
+        assert!(shown.contains(line), "{line}: {shown}");
+    }
+    assert_eq!(bench.read("short.rhai"), SCRIPT);
+    assert!(bench.ok(&["upgrade", "short.rhai", "--write"]).contains("written to short.rhai"));
+    assert!(bench.read("short.rhai").starts_with("edition(2);\nlearner(#{ kind: \"ttd\" });\nworld(\"small\");"));
+    assert!(bench.ok(&["upgrade", "short.rhai", "--write"]).contains("nothing to change"));
+}
+
+#[test]
+fn an_upgraded_script_learns_the_same_table() {
+    let bench = Bench::new();
+    let learned = |bench: &Bench| {
+        bench.engine(&["run", "short.rhai", "--force"]);
+        let text = bench.read("runs/short/1/policy.toml");
+        text.lines().filter(|line| !line.starts_with("run_sha256")).collect::<Vec<_>>().join("\n")
+    };
+    let before = learned(&bench);
+    bench.ok(&["upgrade", "short.rhai", "--write"]);
+    assert_eq!(learned(&bench), before);
+}
+
+#[test]
+fn a_run_says_its_edition_and_one_that_says_none_is_of_the_first() {
+    let bench = Bench::new();
+    bench.engine(&["run", "short.rhai"]);
+    let text = bench.read("runs/short/1/run.toml");
+    assert!(text.contains("\nedition = 2\n"), "{text}");
+    bench.write("runs/short/1/run.toml", text.replace("\nedition = 2\n", "\nedition = 9\n"));
+    assert!(bench.failure(&["replay", "runs/short/1"]).contains("is of edition 9, which this engine does not know"));
+}
+
+#[test]
+fn a_script_that_cannot_be_read_is_not_upgraded() {
+    let bench = Bench::new();
+    bench.write("mine.rhai", "rule \"a\" when");
+    assert!(bench.failure(&["upgrade", "mine.rhai", "--write"]).starts_with("exit status 3"));
+    assert_eq!(bench.read("mine.rhai"), "rule \"a\" when");
+}
+
+#[test]
+fn the_language_comes_as_data() {
+    let data: Value = serde_json::from_str(&Bench::new().ok(&["reference", "--json"])).unwrap();
+    assert_eq!(data["format"], 1);
+    assert!(data["facts"].as_array().unwrap().len() > 40 && data["codes"].as_array().unwrap().len() > 60);
+}
