@@ -150,6 +150,12 @@ pub(crate) struct TestArguments {
     /// Another world: its name, or the path of a world file; without it, the one that the run learned in
     #[arg(long)]
     pub(crate) world: Option<String>,
+    /// Other worlds, equally likely, by name, path or rule, such as corridors:100-120; a comma stands between two
+    #[arg(long, value_delimiter = ',', conflicts_with_all = ["world", "plain"], value_name = "WORLDS")]
+    pub(crate) worlds: Vec<String>,
+    /// Draw nothing: the home world, and no values of randomise
+    #[arg(long)]
+    pub(crate) plain: bool,
     /// The seed of the test; without it, that of the run
     #[arg(long, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: Option<u64>,
