@@ -176,7 +176,8 @@ impl Job {
         let path = options.scripts.join(format!("{}.rhai", real.script));
         let plan = Behaviour::load(&path).and_then(|behaviour| {
             let set = real.set.iter().map(|pair| (*pair).to_owned()).collect();
-            let overrides = Overrides { steps: real.steps, test_steps: Some(real.test_steps), set, ..Overrides::default() };
+            let overrides =
+                Overrides { steps: real.steps, test_steps: Some(real.test_steps), set, ..Overrides::default() };
             Plan::new(Arc::new(behaviour), &overrides)
         });
         let plan = plan.map_err(|error| error.message);

@@ -1,6 +1,7 @@
 //! The command line: names, defaults and help, no logic.
 
 mod check;
+mod new;
 mod pack;
 mod recorded;
 mod runs;
@@ -11,6 +12,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 
 pub(crate) use check::{CheckArguments, CheckFormat};
+pub(crate) use new::{NewArguments, NewCommand, WorldArguments, WorldCommand};
 pub(crate) use pack::*;
 pub(crate) use recorded::{ExplainArguments, ReplayArguments, RescoreArguments};
 pub(crate) use runs::{CompareArguments, RunsArguments, RunsCommand};
@@ -54,6 +56,8 @@ pub(crate) enum Command {
     Plugins(PluginsArguments),
     /// Write a new filter that builds, to change it into your own
     New(NewArguments),
+    /// Worlds that are made by rule: write the file of one
+    World(WorldArguments),
     /// Share a behaviour: one signed file that carries its own evidence
     Pack(PackArguments),
     /// Print the reference page of the script language
@@ -80,7 +84,7 @@ impl Command {
             Self::Filter(arguments) => arguments.json,
             Self::Plugins(arguments) => arguments.json,
             Self::Pack(arguments) => arguments.json,
-            Self::New(_) | Self::Reference(_) | Self::FilterWorker(_) => false,
+            Self::New(_) | Self::World(_) | Self::Reference(_) | Self::FilterWorker(_) => false,
         }
     }
 }
@@ -325,24 +329,6 @@ pub(crate) struct FilterSources {
     /// Run each native filter in a process of its own, so that its crash or endless loop ends only itself
     #[arg(global = true, long)]
     pub(crate) isolate: bool,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct NewArguments {
-    #[command(subcommand)]
-    pub(crate) what: NewCommand,
-}
-
-#[derive(Debug, Subcommand)]
-pub(crate) enum NewCommand {
-    /// Write a filter as a crate of its own, with the contract beside it
-    Filter {
-        /// The filter's name: lower case letters, digits and _
-        name: String,
-        /// The folder to write into [default: the name]
-        #[arg(long, value_name = "DIR")]
-        out: Option<PathBuf>,
-    },
 }
 
 #[derive(Debug, Args)]

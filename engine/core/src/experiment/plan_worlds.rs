@@ -159,7 +159,9 @@ impl Plan {
                 })
             });
             let place = self.behaviour.place_of(&format!("randomise.{}", varied.key));
-            missing.into_iter().for_each(|wrong| mistakes.add(at(wrong, &self.behaviour, place.clone(), "not in this world")));
+            missing
+                .into_iter()
+                .for_each(|wrong| mistakes.add(at(wrong, &self.behaviour, place.clone(), "not in this world")));
         }
     }
 }

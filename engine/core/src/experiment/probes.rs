@@ -51,7 +51,8 @@ impl Probes {
         let movers = plan.layout.movers.iter().filter(|mover| asked(&mover.name));
         let movers = movers.map(|mover| {
             let name = mover.name.clone();
-            let index = |layout: &Arc<Layout>| layout.movers.iter().position(|own| own.name == name).unwrap_or(usize::MAX);
+            let index =
+                |layout: &Arc<Layout>| layout.movers.iter().position(|own| own.name == name).unwrap_or(usize::MAX);
             let indices = layouts.iter().map(index).collect();
             MoverProbe { indices, name, gaps_m: Vec::with_capacity(steps), contacts: 0 }
         });

@@ -1,11 +1,11 @@
 //! What a reward cannot see: where the robot really is, and whether it gets anywhere.
 
-use std::f64::consts::TAU;
-use std::ops::ControlFlow;
 use super::{Cycle, Observer, Step};
 use crate::geometry::{Point2, Pose, wrap_angle};
 use crate::robot::Robot;
 use crate::world::{RouteProgress, WorldSet};
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
 
 /// Seconds over which spinning, standing and circling are judged.
 const SPELL_S: f64 = 20.0;

@@ -1,8 +1,8 @@
 //! What is drawn anew for each attempt, and which parts of a robot and its world that touches.
 
 use crate::random::{Random, Stream};
-use crate::world::Mover;
 use crate::settings::{RecoverTo, Settings, Value, Varied, VariedKey, apply};
+use crate::world::Mover;
 
 /// Draws the values of `randomise`, in the order of its keys.
 #[derive(Debug, Clone)]

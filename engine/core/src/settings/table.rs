@@ -198,7 +198,6 @@ impl Setting {
     pub fn allowed(&self) -> String {
         self.shape.allowed(self.unit)
     }
-
 }
 
 impl SettingShape {

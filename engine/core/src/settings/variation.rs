@@ -101,6 +101,17 @@ impl<'a> VariedKey<'a> {
     }
 }
 
+impl DrawnFrom {
+    /// The range or the choice in words: `40 to 44`, `0 or 1 or 2`.
+    #[must_use]
+    pub fn words(&self) -> String {
+        match self {
+            Self::Range(low, high) => format!("{low} to {high}"),
+            Self::OneOf(values) => values.iter().map(Value::to_string).collect::<Vec<_>>().join(" or "),
+        }
+    }
+}
+
 impl Varied {
     /// Draws once: the number; of words and flags, which of them it is, from 0.
     pub fn draw(&self, random: &mut Random) -> f64 {
@@ -139,7 +150,11 @@ impl Varied {
         (0..count).map(|index| match &self.from {
             DrawnFrom::Range(low, high) => [*low, *high][index],
             DrawnFrom::OneOf(values) => {
-                if let Value::Number(number) = values[index] { number } else { index as f64 }
+                if let Value::Number(number) = values[index] {
+                    number
+                } else {
+                    index as f64
+                }
             }
         })
     }

@@ -94,7 +94,8 @@ impl FloorSquares {
     #[must_use]
     pub(crate) fn covered_of<'a>(floors: impl Iterator<Item = &'a Self> + Clone) -> Option<f64> {
         let been = || floors.clone().filter(|floor| floor.covered > 0);
-        let (covered, reachable): (u64, u64) = (been().map(|floor| floor.covered).sum(), been().map(|floor| floor.reachable).sum());
+        let (covered, reachable): (u64, u64) =
+            (been().map(|floor| floor.covered).sum(), been().map(|floor| floor.reachable).sum());
         floors.clone().next().map(|_| covered as f64 / reachable.max(1) as f64)
     }
 

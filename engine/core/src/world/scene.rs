@@ -168,7 +168,8 @@ impl Scene {
         let mut scene = self.clone();
         for (index, levels) in materials {
             if let Some(material) = scene.parts.materials.get_mut(index) {
-                material.colour = material.colour.map(|level| (f64::from(level) + levels).round().clamp(0.0, 255.0) as u8);
+                material.colour =
+                    material.colour.map(|level| (f64::from(level) + levels).round().clamp(0.0, 255.0) as u8);
             }
         }
         scene

@@ -60,6 +60,8 @@ pub struct Track {
     pub next_state: String,
     pub action: String,
     pub flags: String,
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub world: String,
     pub reward: String,
     pub fired: String,
     pub beam: String,
@@ -88,6 +90,7 @@ struct Columns {
     next_state: Vec<u8>,
     action: Vec<u8>,
     flags: Vec<u8>,
+    world: Vec<u8>,
     reward: Vec<u8>,
     fired: Vec<u8>,
     beam: Vec<u8>,
@@ -172,8 +175,13 @@ impl Columns {
         self.state.extend(record.state.to_le_bytes());
         self.next_state.extend(record.next_state.to_le_bytes());
         self.action.push(record.action as u8);
-        let flags = [record.then.is_some(), record.contact, record.fallen, record.explored];
+        let attempt = source.ledger.attempt(step);
+        let hop = attempt.as_ref().is_some_and(|attempt| attempt.hop);
+        let flags = [record.then.is_some(), record.contact, record.fallen, record.explored, hop];
         self.flags.push(flags.iter().enumerate().fold(0, |set, (bit, flag)| set | u8::from(*flag) << bit));
+        if let Some(attempt) = attempt.filter(|_| !source.plan.worlds.further().is_empty()) {
+            self.world.extend((attempt.world as u16).to_le_bytes());
+        }
         self.reward.extend((record.reward as f32).to_le_bytes());
         let from = self.fired.len();
         self.fired.resize(from + source.plan.behaviour.rules().len().div_ceil(8), 0);
@@ -208,6 +216,7 @@ impl Columns {
             next_state: base64(&self.next_state),
             action: base64(&self.action),
             flags: base64(&self.flags),
+            world: base64(&self.world),
             reward: base64(&self.reward),
             fired: base64(&self.fired),
             beam: base64(&self.beam),
@@ -228,7 +237,8 @@ impl Track {
     #[must_use]
     pub(super) fn bytes(&self) -> usize {
         let columns = [&self.x, &self.y, &self.yaw, &self.state, &self.next_state, &self.action, &self.flags];
-        let others = [&self.reward, &self.fired, &self.beam, &self.nearest_beam, &self.nearest, &self.scan];
+        let others =
+            [&self.world, &self.reward, &self.fired, &self.beam, &self.nearest_beam, &self.nearest, &self.scan];
         let movers = self.movers.iter().flat_map(|mover| [&mover.x, &mover.y, &mover.yaw]);
         columns.into_iter().chain(others).chain(movers).map(String::len).sum()
     }

@@ -22,3 +22,4 @@ pub(crate) mod test;
 mod verify;
 pub(crate) mod watch;
 mod words;
+pub(crate) mod world;

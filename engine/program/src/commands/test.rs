@@ -63,7 +63,11 @@ pub(crate) fn run(arguments: &TestArguments, console: &mut Console) -> Result<u8
     let verdict = plan.success().verdict(&tested.figures, &lines);
     console.json(&TestReport { figures: &tested.figures, lines: &lines, verdict: &verdict })?;
     let how = if plan.learns() { "learned" } else { "combined" };
-    console.line(&format!("behaviour: {} in {}, {how} with seed {seed}", plan.behaviour.name(), plan.worlds.title()))?;
+    console.line(&format!(
+        "behaviour: {} in {}, {how} with seed {seed}",
+        plan.behaviour.name(),
+        plan.worlds.title()
+    ))?;
     if let Some(combination) = &tested.combination {
         print_combination(console, &combination.figures)?;
     }

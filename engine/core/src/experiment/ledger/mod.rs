@@ -10,8 +10,8 @@ use std::ops::ControlFlow;
 use super::{Cycle, Observer, Plan, Step};
 use crate::robot::Robot;
 
-use record::{FIXED_BYTES, first_field};
 pub use record::{Attempt, Record, RecordShape};
+use record::{FIXED_BYTES, first_field};
 
 /// The most steps that a ledger keeps: of a longer run it holds the beginning.
 pub const MOST_STEPS: u64 = 1 << 20;

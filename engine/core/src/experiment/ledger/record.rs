@@ -126,8 +126,13 @@ impl RecordShape {
         self.drawn?;
         let (words, _) = record.get(self.judged_bytes()..)?.as_chunks::<8>();
         let (first, drawn) = words.split_first()?;
-        let [world, hop] = [0, 4].map(|at| u32::from_le_bytes([first[at], first[at + 1], first[at + 2], first[at + 3]]));
-        Some(Attempt { world: world as usize, hop: hop == 1, drawn: drawn.iter().map(|word| f64::from_le_bytes(*word)).collect() })
+        let [world, hop] =
+            [0, 4].map(|at| u32::from_le_bytes([first[at], first[at + 1], first[at + 2], first[at + 3]]));
+        Some(Attempt {
+            world: world as usize,
+            hop: hop == 1,
+            drawn: drawn.iter().map(|word| f64::from_le_bytes(*word)).collect(),
+        })
     }
 
     /// The fixed values.

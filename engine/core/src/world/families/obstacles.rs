@@ -21,9 +21,7 @@ pub(super) fn by_the_wall(random: &mut Random, face: &[[f64; 2]], out_m: f64) ->
         }
         let [ahead, left] = [[x / length, y / length], [-y / length, x / length]];
         let at = FROM_CORNER_M + along * (length - 2.0 * FROM_CORNER_M);
-        let place = |aside: f64| {
-            [from[0] + at * ahead[0] + aside * left[0], from[1] + at * ahead[1] + aside * left[1]]
-        };
+        let place = |aside: f64| [from[0] + at * ahead[0] + aside * left[0], from[1] + at * ahead[1] + aside * left[1]];
         let [x, y] = place(0.5 * depth);
         if is_round {
             let _ = write!(

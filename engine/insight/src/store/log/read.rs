@@ -171,19 +171,16 @@ fn check_records(log: &RunLog, plan: &Plan) -> Result<()> {
     };
     let worlds = plan.worlds.layouts().len();
     let was_there = |ledger: &Ledger, step: usize| {
-        ledger.attempt(step).is_none_or(|attempt| {
-            attempt.world < worlds && attempt.drawn.iter().all(|drawn| drawn.is_finite())
-        })
+        ledger
+            .attempt(step)
+            .is_none_or(|attempt| attempt.world < worlds && attempt.drawn.iter().all(|drawn| drawn.is_finite()))
     };
     for (name, ledger) in [("learning", &log.learning), ("the test", &log.test)] {
-        let wrong = ledger
-            .records()
-            .enumerate()
-            .find(|(step, record)| {
-                !is_possible(record)
-                    || !ledger.fired(*step).all(|(_, value)| value.is_finite())
-                    || !was_there(ledger, *step)
-            });
+        let wrong = ledger.records().enumerate().find(|(step, record)| {
+            !is_possible(record)
+                || !ledger.fired(*step).all(|(_, value)| value.is_finite())
+                || !was_there(ledger, *step)
+        });
         if let Some((step, _)) = wrong {
             return damaged(format!("step {step} of {name} in the log is not one that the run can have done")).fail();
         }
