@@ -77,8 +77,8 @@ mod shipped;
 mod terminal;
 /// What is called a success: no cheat, no chance, no reward alone; failures, goals and restarts told apart.
 mod verdict;
-/// Several worlds in one run, and what is drawn for each attempt.
-mod worlds;
 /// The live page by raw connections: what is refused, what is told.
 #[cfg(feature = "serve")]
 mod watch;
+/// Several worlds in one run, and what is drawn for each attempt.
+mod worlds;
