@@ -104,3 +104,15 @@ fn more_steps_with_a_used_policy_allocate_nothing_more() {
     let plan = plan(&format!("{uses}\n{text}")).with_used(vec![Arc::new(used)]);
     assert_eq!(allocations(&plan, 5_000), allocations(&plan, 1_000));
 }
+
+#[test]
+fn going_from_world_to_world_allocates_nothing() {
+    let path = root().join("scripts/wall.rhai");
+    let worlds = "worlds([\"room\", \"corridors:1-2\"]); run(#{ stay_steps: 20, period_s: 0.5 });";
+    let text = std::fs::read_to_string(&path).unwrap();
+    let text = text.replace("world(\"room\");", worlds).replace("run(#{ period_s: 0.5 });\n", "\n");
+    let behaviour = Behaviour::parse("wall", SourceText::new(path, text)).unwrap();
+    let plan = Plan::new(Arc::new(behaviour), &Overrides::default()).unwrap();
+    assert_eq!(plan.worlds.layouts().len(), 3);
+    assert_eq!(allocations(&plan, 5_000), allocations(&plan, 1_000));
+}

@@ -86,3 +86,5 @@ mod verdict;
 /// The live page by raw connections: what is refused, what is told.
 #[cfg(feature = "serve")]
 mod watch;
+/// Several worlds in one run, and what is drawn for each attempt.
+mod worlds;

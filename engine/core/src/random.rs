@@ -26,10 +26,16 @@ pub enum Stream {
     Test = 6,
     /// The choices of a robot that knows nothing, in its test.
     Untrained = 7,
+    /// What is drawn anew for each attempt.
+    Variation = 8,
     /// The speeds of movers that have a range of them.
     Movers = 9,
+    /// Which world comes next.
+    Worlds = 10,
+    /// What stands in a world that is made by rule.
+    Families = 11,
     /// The choices of learned policies that a script uses.
-    Used = 11,
+    Used = 12,
 }
 
 /// One stream of random numbers.

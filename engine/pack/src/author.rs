@@ -193,7 +193,7 @@ fn assemble(origin: &Path, mut manifest: Manifest, files: &BTreeMap<EntryPath, V
 
 fn picture(runnable: &Runnable, proof: &Proof) -> Result<Vec<u8>> {
     let plan = &runnable.plan;
-    let title = format!("{} in {}, seed {}", plan.behaviour.name(), plan.layout.name, proof.claim.seed);
+    let title = format!("{} in {}, seed {}", plan.behaviour.name(), plan.worlds.title(), proof.claim.seed);
     let tested = ("test: first 800 steps", &proof.tested.trail);
     let panels: Vec<_> = proof.early.iter().map(|early| ("learning: first 400 steps", early)).chain([tested]).collect();
     Ok(trajectories(&TrajectoryData { title: &title, world: &WorldPlan::of(plan), panels: &panels })?.png)

@@ -15,6 +15,7 @@ use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::experiment::{Overrides, Plan};
 use engine::filter::{Catalogue, Form, Sources};
 use engine::settings::Edition;
+use engine::world::{FamilyRange, Layout};
 use insight::report::write_atomic;
 use insight::store::with_policies;
 
@@ -115,8 +116,13 @@ fn collect_filters(plan: &Plan, files: &mut Files) -> Result<Capabilities> {
 fn collect(plan: &Plan, files: &mut Files) -> Result<Option<String>> {
     let stem = plan.behaviour.name().to_lowercase();
     files.insert(format!("scripts/{stem}.rhai"), plan.behaviour.source().text.as_bytes().to_vec());
-    let world = format!("worlds/{}.toml", plan.layout.name.to_lowercase());
-    files.insert(world.clone(), plan.layout.source.text.as_bytes().to_vec());
+    // What is made by rule is made again where the pack runs.
+    let of_file = |layout: &&Arc<Layout>| !matches!(FamilyRange::of(&layout.name), Some(Ok(_)));
+    let place = |layout: &Layout| format!("worlds/{}.toml", layout.name.to_lowercase());
+    for layout in plan.worlds.layouts().iter().filter(of_file) {
+        files.insert(place(layout), layout.source.text.as_bytes().to_vec());
+    }
+    let world = place(&plan.layout);
     if let Some(body) = plan.behaviour.body()
         && let Some(name) = body.path.file_name()
     {
@@ -134,6 +140,9 @@ fn collect(plan: &Plan, files: &mut Files) -> Result<Option<String>> {
         if let Some(run) = run {
             files.insert(format!("{path}/run.toml"), run.text.as_bytes().to_vec());
         }
+    }
+    if !plan.worlds.further().is_empty() || !files.contains_key(&world) {
+        return Ok(None);
     }
     let named = &plan.settings.world;
     Ok((named.contains('/') || named.ends_with(".toml") || *named != plan.layout.name.to_lowercase()).then_some(world))

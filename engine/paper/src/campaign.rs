@@ -176,7 +176,8 @@ impl Job {
         let path = options.scripts.join(format!("{}.rhai", real.script));
         let plan = Behaviour::load(&path).and_then(|behaviour| {
             let set = real.set.iter().map(|pair| (*pair).to_owned()).collect();
-            let overrides = Overrides { world: None, steps: real.steps, test_steps: Some(real.test_steps), set };
+            let overrides =
+                Overrides { steps: real.steps, test_steps: Some(real.test_steps), set, ..Overrides::default() };
             Plan::new(Arc::new(behaviour), &overrides)
         });
         let plan = plan.map_err(|error| error.message);
@@ -185,7 +186,7 @@ impl Job {
                 let real = options.trial(*trial);
                 let set = real.set.iter().map(|pair| (*pair).to_owned()).collect();
                 let world = real.world.map(str::to_owned);
-                plan.with_changes(&Overrides { world, steps: None, test_steps: Some(real.steps), set })
+                plan.with_changes(&Overrides { world, test_steps: Some(real.steps), set, ..Overrides::default() })
                     .map_err(|error| error.message)
             });
             (*trial, trial_plan)

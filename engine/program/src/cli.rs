@@ -2,6 +2,7 @@
 
 mod check;
 mod language;
+mod new;
 mod pack;
 mod recorded;
 mod runs;
@@ -13,6 +14,7 @@ use clap::{Args, Parser, Subcommand};
 
 pub(crate) use check::{CheckArguments, CheckFormat};
 pub(crate) use language::{ReferenceArguments, UpgradeArguments};
+pub(crate) use new::{NewArguments, NewCommand, WorldArguments, WorldCommand};
 pub(crate) use pack::*;
 pub(crate) use recorded::{ExplainArguments, ReplayArguments, RescoreArguments};
 pub(crate) use runs::{CompareArguments, RunsArguments, RunsCommand};
@@ -56,6 +58,8 @@ pub(crate) enum Command {
     Plugins(PluginsArguments),
     /// Write a new filter that builds, to change it into your own
     New(NewArguments),
+    /// Worlds that are made by rule: write the file of one
+    World(WorldArguments),
     /// Share a behaviour: one signed file that carries its own evidence
     Pack(PackArguments),
     /// Print the reference page of the script language, or the language as data
@@ -85,7 +89,7 @@ impl Command {
             Self::Plugins(arguments) => arguments.json,
             Self::Pack(arguments) => arguments.json,
             Self::Upgrade(arguments) => arguments.json,
-            Self::New(_) | Self::Reference(_) | Self::FilterWorker(_) => false,
+            Self::New(_) | Self::World(_) | Self::Reference(_) | Self::FilterWorker(_) => false,
         }
     }
 }
@@ -155,6 +159,12 @@ pub(crate) struct TestArguments {
     /// Another world: its name, or the path of a world file; without it, the one that the run learned in
     #[arg(long)]
     pub(crate) world: Option<String>,
+    /// Other worlds, equally likely, by name, path or rule, such as corridors:100-120; a comma stands between two
+    #[arg(long, value_delimiter = ',', conflicts_with_all = ["world", "plain"], value_name = "WORLDS")]
+    pub(crate) worlds: Vec<String>,
+    /// Draw nothing: the home world, and no values of randomise
+    #[arg(long)]
+    pub(crate) plain: bool,
     /// The seed of the test; without it, that of the run
     #[arg(long, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: Option<u64>,
@@ -327,24 +337,6 @@ pub(crate) struct FilterSources {
     /// Run each native filter in a process of its own, so that its crash or endless loop ends only itself
     #[arg(global = true, long)]
     pub(crate) isolate: bool,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct NewArguments {
-    #[command(subcommand)]
-    pub(crate) what: NewCommand,
-}
-
-#[derive(Debug, Subcommand)]
-pub(crate) enum NewCommand {
-    /// Write a filter as a crate of its own, with the contract beside it
-    Filter {
-        /// The filter's name: lower case letters, digits and _
-        name: String,
-        /// The folder to write into [default: the name]
-        #[arg(long, value_name = "DIR")]
-        out: Option<PathBuf>,
-    },
 }
 
 #[derive(Debug, Args)]

@@ -44,6 +44,7 @@ fn run(command: &Command, console: &mut Console) -> Result<u8, ConsoleError> {
         Command::Plugins(arguments) => commands::plugins::run(arguments, console),
         Command::FilterWorker(arguments) => commands::sources::work(arguments),
         Command::New(arguments) => commands::new::run(arguments, console),
+        Command::World(arguments) => commands::world::run(arguments, console),
         Command::Pack(arguments) => commands::pack::run(arguments, console),
         Command::Reference(arguments) => commands::reference::run(arguments, console),
         Command::Upgrade(arguments) => commands::upgrade::run(arguments, console),

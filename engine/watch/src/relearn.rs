@@ -253,10 +253,12 @@ impl Relearner {
 
     fn plan(&self, files: &Mutex<Files>) -> Result<Plan> {
         let plan = self.loaded()?;
-        let world = plan.layout.source.path.clone();
+        // A world that is made by rule is no file.
+        let worlds = plan.worlds.layouts().iter().map(|layout| layout.source.path.clone());
+        let worlds = worlds.filter(|path| path.exists());
         // A body that ships is no file.
         let body = plan.behaviour.body().map(|body| body.path.clone()).filter(|path| path.exists());
-        files.lock().unwrap_or_else(PoisonError::into_inner).watch([Some(world), body].into_iter().flatten())?;
+        files.lock().unwrap_or_else(PoisonError::into_inner).watch(worlds.chain(body))?;
         if !plan.learns() || !plan.behaviour.hands_over() {
             return Ok(plan);
         }

@@ -125,10 +125,10 @@ impl CertaintyGrid {
     }
 }
 
-/// Adds each scan at the robot's true pose.
+/// Adds each scan in the home world at the robot's true pose.
 impl<R: Robot> Observer<R> for CertaintyGrid {
     fn stepped(&mut self, cycle: &Cycle<R>, _: &Step) -> ControlFlow<()> {
-        if let Some(here) = cycle.robot().whereabouts() {
+        if let Some(here) = cycle.robot().whereabouts().filter(|_| cycle.robot().world_index() == 0) {
             self.add(here.pose, &cycle.observation().scan.ranges_m);
         }
         ControlFlow::Continue(())

@@ -5,7 +5,9 @@ use std::sync::Arc;
 use super::Overrides;
 use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
 use crate::script::{Behaviour, Param, ParamValues, no_param};
-use crate::settings::{CONDITION, SETTINGS, SettingError, Settings, UNNAMED_VIEW, Value, ViewSettings, apply};
+use crate::settings::{
+    CONDITION, SETTINGS, SettingError, Settings, UNNAMED_VIEW, Value, Varied, ViewSettings, WorldShare, apply,
+};
 
 impl Overrides {
     /// The numbers that it sets and that are no setting: parameters of the script, if it has them.
@@ -39,8 +41,26 @@ pub(super) fn changed(settings: &Settings, params: &[Param], overrides: &Overrid
     }
     if let Some(world) = &overrides.world {
         settings.world.clone_from(world);
+        settings.worlds.clear();
     }
+    if !overrides.worlds.is_empty() {
+        let share = |name: &String| WorldShare { name: name.clone(), weight: 1 };
+        settings.worlds = overrides.worlds.iter().map(share).collect();
+    }
+    if overrides.plain {
+        settings.randomise.clear();
+    }
+    refuse_drawn(&settings, overrides)?;
     Ok(settings)
+}
+
+/// Refuses to set what is drawn anew for each attempt.
+fn refuse_drawn(settings: &Settings, overrides: &Overrides) -> Result<()> {
+    let keys = || overrides.set.iter().filter_map(|pair| pair.split_once('=')).map(|(key, _)| key.trim());
+    let drawn = settings.randomise.iter().find(|varied| keys().any(|key| key == varied.key));
+    let Some(Varied { key, .. }) = drawn else { return Ok(()) };
+    let message = format!("'{key}' is drawn anew for each attempt: it cannot be set to one value");
+    Diagnostic::new("E-SET", message).help(format!("take {key} out of randomise, or change its range there")).fail()
 }
 
 /// Carries out one `--set KEY=VALUE`.

@@ -40,6 +40,8 @@ pub struct Cycle<R> {
     has_goals: bool,
     /// What the robot is told if it is to recover now.
     ended: Ended,
+    /// After so many steps an attempt is broken off.
+    stay_steps: u64,
 }
 
 impl<R> Cycle<R> {
@@ -98,7 +100,9 @@ impl<R: Robot> Cycle<R> {
             co_drivers,
             has_goals: plan.behaviour.has_goals(),
             ended: Ended::default(),
+            stay_steps: plan.stay_steps(),
         };
+        cycle.measure_reach();
         cycle.observation.ground = cycle.reads_ground().then(Default::default);
         cycle.perceive()?;
         cycle.calibrate()?;
@@ -140,6 +144,7 @@ impl<R: Robot> Cycle<R> {
         self.observation.ground = self.reads_ground().then(Default::default);
         self.has_goals = plan.behaviour.has_goals();
         (self.potential, self.leave) = (0.0, Leave::default());
+        self.judge.go_to(self.robot.world_index());
         self.calibrate()?;
         self.rest()
     }
@@ -251,7 +256,8 @@ impl<R: Robot> Cycle<R> {
         }
         self.steps += 1;
         self.potential = self.judge.potential();
-        self.ended = self.ended(&verdict);
+        let hop = self.since_recovery >= self.stay_steps && verdict.then.is_none();
+        self.ended = self.ended(&verdict, hop);
         Ok(Step {
             index,
             state,
@@ -269,14 +275,24 @@ impl<R: Robot> Cycle<R> {
             hands_over: verdict.then.is_none() && self.co_drivers.drive(),
             guarded,
             next_allowed: self.leave.allowed,
+            hop,
         })
     }
 
     /// What the robot is told of an attempt that ends here.
-    fn ended(&self, verdict: &Judgement) -> Ended {
+    fn ended(&self, verdict: &Judgement, hop: bool) -> Ended {
         let ending = verdict.then.map(|then| then.ending(verdict.reward));
-        let lasted = self.since_recovery >= LONG_STEPS || ending == Some(Ending::Restart);
-        Ended { to: verdict.to, good: if self.has_goals { ending == Some(Ending::Goal) } else { lasted } }
+        // Who was broken off after the longest stay has lasted; whether it would have reached a goal cannot be told.
+        let lasted = hop || self.since_recovery >= LONG_STEPS || ending == Some(Ending::Restart);
+        let good = if self.has_goals { ending == Some(Ending::Goal) } else { lasted };
+        Ended { to: verdict.to, good: (!hop || !self.has_goals).then_some(good) }
+    }
+
+    /// The laser's range may have been drawn anew.
+    fn measure_reach(&mut self) {
+        if let Some(max_range_m) = self.robot.laser_max_range_m() {
+            self.laser.reaches(max_range_m);
+        }
     }
 
     /// Brings the robot back to a safe pose. Not a step: nothing is judged or learned from it.
@@ -285,11 +301,19 @@ impl<R: Robot> Cycle<R> {
     /// If there is no safe pose, or a sensor fails.
     pub fn recover(&mut self) -> Result<()> {
         self.robot.recover_after(std::mem::take(&mut self.ended))?;
+        self.judge.go_to(self.robot.world_index());
+        self.measure_reach();
         self.judge.recovered();
         self.potential = 0.0;
         self.since_recovery = 0;
         self.eyes.iter_mut().for_each(Eyes::forget);
         self.perceive()?;
+        if !self.judge.is_calibrated() {
+            self.calibrate()?;
+        } else if self.stay_steps < u64::MAX {
+            // Whoever judges a record anew is calibrated by what is seen on arrival.
+            self.fill_facts(0, self.steps);
+        }
         self.rest()
     }
 

@@ -4,7 +4,7 @@
 //! are [`Observer`]s. The order of a step is
 //!
 //! ```text
-//! choose -> act, sense, judge -> learn -> observers look -> recovery, if the script asks for it -> observers are told
+//! choose -> act, sense, judge -> learn -> observers look -> recovery, if the attempt has ended -> observers are told
 //! ```
 
 use std::ops::ControlFlow;
@@ -66,7 +66,7 @@ pub fn drive<R: Robot>(
 ) -> Result<u64> {
     for done in 0..steps {
         let (step, flow) = advance(cycle, chooser, observer)?;
-        if step.then.is_some() {
+        if step.moves() {
             recover(cycle, chooser, observer)?;
         }
         if flow.is_break() {

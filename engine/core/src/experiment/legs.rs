@@ -6,6 +6,7 @@
 use super::Plan;
 use crate::learner::Carry;
 use crate::settings::{SETTINGS, Settings};
+use std::sync::Arc;
 
 /// A part of learning under one script, before the reward was swapped.
 #[derive(Clone)]
@@ -87,7 +88,10 @@ impl Plan {
                 plan.settings.views().flat_map(|view| &view.filters).map(|filter| plan.filters.find(&filter.name).ok());
             entries.map(|entry| entry.and_then(|entry| entry.sha256.clone())).collect()
         };
-        let same_world = other.layout.source.text == self.layout.source.text;
+        let texts = |plan: &Self| -> Vec<Arc<str>> {
+            plan.worlds.layouts().iter().map(|layout| layout.source.text.clone()).collect()
+        };
+        let same_world = texts(other) == texts(self);
         let fixed = first_fixed_difference(&other.settings, &self.settings).map(|(what, _)| what);
         let uses = self.behaviour.hands_over() || other.behaviour.hands_over();
         fixed
@@ -118,6 +122,8 @@ pub(super) fn first_fixed_difference(old: &Settings, new: &Settings) -> Option<(
     let row = row.map(|row| (row.name(), format!("{}.{}", row.group, row.key)));
     let parts = [
         (old.world == new.world, "the world", "world"),
+        (old.worlds == new.worlds, "the worlds", "worlds"),
+        (old.randomise == new.randomise, "what is drawn", "randomise"),
         (old.view.filters == new.view.filters, "the filters", "filter:0"),
         (old.view.name == new.view.name && old.further_views == new.further_views, "the views", "state"),
         (old.state == new.state, "the parts of the state", "state"),

@@ -22,13 +22,11 @@ pub(super) fn figures(
 ) -> TestFigures {
     let period_s = plan.settings.run.period_s;
     let seconds = (steps as f64 * period_s).max(f64::MIN_POSITIVE);
-    let lap_m = plan.layout.lap.map(|lap| plan.layout.routes[lap].length_m());
     let per_1000 = |count: f64| count * 1000.0 / steps.max(1) as f64;
     let spells = truth.map_or_else(Spells::default, |truth| truth.spells);
     let share = |count: u64| count as f64 / spells.all.max(1) as f64;
     let net_route_m = truth.and_then(Truth::net_m);
     let distance_m = truth.map_or(0.0, |truth| truth.distance_m);
-    let along = truth.and_then(|truth| truth.along.as_ref());
     let prey_m = truth.map_or(&[][..], |truth| &truth.prey_m);
     let endings = tally.endings();
     TestFigures {
@@ -42,9 +40,9 @@ pub(super) fn figures(
         reinforcement_per_1000: per_1000(tally.curve().iter().sum()),
         distance_m,
         net_route_m,
-        laps: net_route_m.zip(lap_m).map(|(net_m, lap_m)| net_m / lap_m),
-        off_route: along.map(|along| along.off_steps as f64 / steps.max(1) as f64),
-        route_offset_m: along.map(|along| along.offsets_m / steps.max(1) as f64),
+        laps: truth.and_then(Truth::laps),
+        off_route: truth.and_then(Truth::off_steps).map(|off_steps| off_steps / steps.max(1) as f64),
+        route_offset_m: truth.and_then(Truth::offsets_m).map(|offsets_m| offsets_m / steps.max(1) as f64),
         metres_per_failure: net_route_m.map_or(distance_m, f64::abs) / (endings.failures + 1) as f64,
         metres_per_intervention: net_route_m.map_or(distance_m, f64::abs)
             / (endings.failures + endings.restarts + 1) as f64,

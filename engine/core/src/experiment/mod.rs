@@ -22,6 +22,7 @@ mod measured;
 mod outlook;
 mod parts;
 mod plan;
+mod plan_worlds;
 mod playback;
 mod probes;
 mod reasons;
@@ -55,7 +56,7 @@ pub use disagreement::{CombinationFigures, Disagreement, DisagreementFigures, Di
 pub use drive::{Choice, Chooser, Each, Observer, drive};
 pub use eyes::{Eyes, ViewStage};
 pub use learning::{BrokenOff, Learned, Learning, Progress, learn, learn_into};
-pub use ledger::{Ledger, LedgerLeg, MOST_STEPS, Record, RecordShape};
+pub use ledger::{Attempt, Ledger, LedgerLeg, MOST_STEPS, Record, RecordShape};
 pub use legs::Leg;
 
 pub use plan::{Overrides, Plan};

@@ -1,28 +1,32 @@
 //! From what was written to what can run: the behaviour's settings, the command line's changes, the world, all checked.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use super::changes::{changed, with_params};
 use super::parts::Parts;
+use super::plan_worlds::load_worlds;
 use super::{Eyes, Leg, Member, UsedPolicy, outlook};
-use crate::diagnostic::{Diagnostic, Mistakes, Result, nearest_name, printable};
+use crate::diagnostic::{Diagnostic, Mistakes, Result};
 use crate::filter::{Catalogue, Chain};
 use crate::judge::Judge;
 use crate::learner::{Mirror, Task};
 use crate::random::{Random, Stream};
-use crate::robot::SimulatedRobot;
-use crate::script::{Behaviour, Draft, Nameable, Unread};
+use crate::script::{Behaviour, Draft, Unread};
 use crate::settings::Settings;
 use crate::state::{Grid, StateMap};
 use crate::verdict::Success;
-use crate::world::{FloorSquares, Layout};
+use crate::world::{Layout, WorldSet};
 
 /// What the command line changes.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Overrides {
     /// Another world: a name, or the path of a file.
     pub world: Option<String>,
+    /// Other worlds, equally likely; none to leave them as they are.
+    pub worlds: Vec<String>,
+    /// Nothing is drawn: one world, or of several the home world, and no values.
+    pub plain: bool,
     /// Another number of learning steps.
     pub steps: Option<u64>,
     /// Another number of test steps.
@@ -38,8 +42,10 @@ pub struct Plan {
     pub behaviour: Arc<Behaviour>,
     /// Its settings, with the command line's changes.
     pub settings: Settings,
-    /// The world.
+    /// The world; of several, the home world.
     pub layout: Arc<Layout>,
+    /// All worlds, the home world first.
+    pub worlds: WorldSet,
     /// The policies that its script combines, once they are loaded; none of a behaviour that learns.
     pub members: Vec<Member>,
     /// The policies that its script uses, once they are loaded, in the order in which it names them.
@@ -97,14 +103,14 @@ impl Plan {
             // It may be about something that the script could not say.
             Err(error) => return mistakes.end().and(Err(error)),
         };
-        let layout = if overrides.world.is_none() && unread.any_of("world") {
+        let named = overrides.world.is_some() || !overrides.worlds.is_empty();
+        let worlds = if !named && (unread.any_of("world") || unread.any_of("worlds")) {
             None
         } else {
-            let place = if overrides.world.is_some() { None } else { behaviour.place_of("world") };
-            let path = find_world(&behaviour, &settings.world, place);
-            mistakes.take(path.and_then(|path| Layout::load(&path, &settings.robot.body)))
+            let worlds = load_worlds(&behaviour, &settings, named, &mut mistakes);
+            worlds.map(|worlds| if overrides.plain { WorldSet::alone(Arc::clone(worlds.home())) } else { worlds })
         };
-        Self::checked(behaviour, settings, layout.map(Arc::new), filters, unread, mistakes)
+        Self::checked(behaviour, settings, worlds, filters, unread, mistakes)
     }
 
     /// This plan with changes; it keeps its world unless another is named.
@@ -115,12 +121,19 @@ impl Plan {
         let behaviour = with_params(Arc::clone(&self.behaviour), overrides)?;
         let followed = self.settings.clone().following(self.behaviour.settings(), behaviour.settings());
         let settings = changed(&followed, behaviour.params(), overrides)?;
-        let layout = if overrides.world.is_some() || settings.world != self.settings.world {
-            Arc::new(Layout::load(&find_world(&behaviour, &settings.world, None)?, &settings.robot.body)?)
+        let named = overrides.world.is_some() || !overrides.worlds.is_empty();
+        let others = (&settings.world, &settings.worlds) != (&self.settings.world, &self.settings.worlds);
+        let worlds = if named || others {
+            let mut mistakes = Mistakes::new(behaviour.source());
+            let worlds = load_worlds(&behaviour, &settings, true, &mut mistakes);
+            mistakes.end()?;
+            worlds.unwrap_or(self.worlds)
+        } else if overrides.plain {
+            WorldSet::alone(self.layout)
         } else {
-            self.layout
+            self.worlds
         };
-        let plan = Self::with_layout(behaviour, settings, layout, self.filters)?;
+        let plan = Self::with_worlds(behaviour, settings, worlds, self.filters)?;
         Ok(plan.with_members(self.members).with_used(self.used).after(self.earlier))
     }
 
@@ -134,62 +147,53 @@ impl Plan {
         layout: Arc<Layout>,
         filters: Arc<Catalogue>,
     ) -> Result<Self> {
+        Self::with_worlds(behaviour, settings, WorldSet::alone(layout), filters)
+    }
+
+    /// A plan in several worlds, from parts that were resolved before.
+    ///
+    /// # Errors
+    /// As [`Plan::new`].
+    pub fn with_worlds(
+        behaviour: Arc<Behaviour>,
+        settings: Settings,
+        worlds: WorldSet,
+        filters: Arc<Catalogue>,
+    ) -> Result<Self> {
         let mistakes = Mistakes::new(behaviour.source());
-        Self::checked(behaviour, settings, Some(layout), filters, &Unread::default(), mistakes)
+        Self::checked(behaviour, settings, Some(worlds), filters, &Unread::default(), mistakes)
     }
 
     /// Every check whose settings are read, whatever the others find.
     fn checked(
         behaviour: Arc<Behaviour>,
         settings: Settings,
-        layout: Option<Arc<Layout>>,
+        worlds: Option<WorldSet>,
         filters: Arc<Catalogue>,
         unread: &Unread,
         mut mistakes: Mistakes,
     ) -> Result<Self> {
         let parts = Parts { behaviour: &behaviour, settings: &settings, filters: &filters };
         let sees = parts.check(unread, &mut mistakes);
-        let Some(layout) = layout else {
+        let Some(worlds) = worlds else {
             let unknown = Diagnostic::new("E-WORLD-FILE", "the script does not say which world");
             return mistakes.end().and(Err(Box::new(unknown)));
         };
-        let plan =
-            Self { behaviour, settings, layout, members: Vec::new(), used: Vec::new(), filters, earlier: Vec::new() };
-        if !unread.any_of("laser") {
-            let height_m = plan.layout.level_height_m(&plan.settings.robot.body);
-            plan.behaviour.find_unreachable(&plan.settings.laser, height_m, &mut mistakes);
-        }
+        let layout = Arc::clone(worlds.home());
+        let (members, used, earlier) = (Vec::new(), Vec::new(), Vec::new());
+        let plan = Self { behaviour, settings, layout, worlds, members, used, filters, earlier };
+        plan.find_out_of_reach(unread, &mut mistakes);
         plan.find_unnamed(&mut mistakes);
+        plan.find_unvaried(&mut mistakes);
         let robot = ["camera", "laser", "movers", "recovery", "robot", "run"];
-        if !robot.iter().any(|call| unread.any_of(call))
-            && mistakes.take(SimulatedRobot::new(&plan.layout, &plan.settings, 0)).is_some()
-            && sees
-        {
-            mistakes.take(outlook::check_outlook(&plan));
+        if !robot.iter().any(|call| unread.any_of(call)) && mistakes.take(plan.try_worlds()).is_some() && sees {
+            let alone = (0..plan.worlds.layouts().len()).map(|world| plan.in_world(world));
+            mistakes.take(alone.into_iter().try_for_each(|plan| outlook::check_outlook(&plan)));
         }
         mistakes.end().map(|()| plan)
     }
 
-    /// Adds what the script names, or is measured by, and the world does not have.
-    fn find_unnamed(&self, mistakes: &mut Mistakes) {
-        let Layout { name, starts, movers, places, gates, lap, .. } = &*self.layout;
-        let starts: Vec<&str> = starts.iter().map(|start| start.name.as_str()).collect();
-        let movers: Vec<&str> = movers.iter().map(|mover| mover.name.as_str()).collect();
-        let places: Vec<&str> = places.iter().map(|place| place.name.as_str()).collect();
-        let world = Nameable {
-            world: name,
-            starts: &starts,
-            has_route: lap.is_some(),
-            movers: &movers,
-            places: &places,
-            has_gates: !gates.is_empty(),
-            has_squares: FloorSquares::fit(&self.layout),
-        };
-        self.behaviour.find_unmeasurable(&world, mistakes);
-        self.behaviour.find_unplaced(&self.settings, &world, mistakes);
-    }
-
-    fn parts(&self) -> Parts<'_> {
+    pub(super) fn parts(&self) -> Parts<'_> {
         Parts { behaviour: &self.behaviour, settings: &self.settings, filters: &self.filters }
     }
 
@@ -277,7 +281,7 @@ impl Plan {
     #[must_use]
     pub fn success(&self) -> Success {
         let run = &self.settings.run;
-        self.behaviour.success(self.layout.lap.is_some(), run)
+        self.behaviour.success(self.worlds.have_laps(), run)
     }
 
     /// The plan with the policies that its script combines.
@@ -291,54 +295,11 @@ impl Plan {
     /// # Errors
     /// If a rule does not fit the settings, such as a beam that the laser does not have.
     pub fn judge(&self) -> Result<Judge> {
-        let starts = self.layout.starts.iter().map(|start| start.name.clone()).collect();
-        let judge = self.parts().judge()?.in_world(starts);
+        let starts = |layout: &Arc<Layout>| layout.starts.iter().map(|start| start.name.clone()).collect();
+        let judge = self.parts().judge()?.in_worlds(self.worlds.layouts().iter().map(starts));
         if self.used.is_empty() {
             return Ok(judge);
         }
         Ok(judge.with_actions(&self.motions(), self.settings.actions.len()))
     }
-}
-
-/// The file of a world: a path as it is, a name in the folders where worlds are kept.
-fn find_world(behaviour: &Behaviour, name: &str, place: Option<std::ops::Range<usize>>) -> Result<PathBuf> {
-    let script = &behaviour.source().path;
-    let folder = script.parent().unwrap_or(Path::new(""));
-    let is_path = name.contains(['/', '\\']) || name.ends_with(".toml");
-    let tried: Vec<PathBuf> = if is_path {
-        // A path in a script is meant from the script, a path on the command line from where the user stands.
-        vec![if place.is_some() { folder.join(name) } else { PathBuf::from(name) }]
-    } else {
-        let file = format!("{name}.toml");
-        ["../worlds", "worlds", ""]
-            .iter()
-            .map(|part| folder.join(part).join(&file))
-            .chain([Path::new("worlds").join(&file)])
-            .collect()
-    };
-    if let Some(found) = tried.iter().find(|path| path.exists()) {
-        return Ok(found.clone());
-    }
-    let known = known_worlds(&tried);
-    let help = match nearest_name(name, known.iter().map(String::as_str)) {
-        Some(near) => format!("did you mean \"{near}\"?"),
-        None if known.is_empty() => "write the path of a world file, such as worlds/room.toml".to_owned(),
-        None => format!("there are: {}", known.join(", ")),
-    };
-    let message = format!("there is no world '{}'", printable(name));
-    let error = Diagnostic::new("E-WORLD-FILE", message).help(help);
-    match place {
-        Some(span) => error.at(behaviour.source(), span, "not found").fail(),
-        None => error.fail(),
-    }
-}
-
-fn known_worlds(tried: &[PathBuf]) -> Vec<String> {
-    let folders = tried.iter().filter_map(|path| path.parent()).filter(|folder| folder.ends_with("worlds"));
-    let files = folders.filter_map(|folder| std::fs::read_dir(folder).ok()).flatten().flatten();
-    let mut names: Vec<String> =
-        files.filter_map(|entry| entry.file_name().to_str()?.strip_suffix(".toml").map(str::to_owned)).collect();
-    names.sort();
-    names.dedup();
-    names
 }

@@ -39,7 +39,7 @@ impl Phase {
             // The test uses all of them.
             settings.starts.widen = None;
         }
-        SimulatedRobot::new(&plan.layout, &settings, self.seed(seed))
+        SimulatedRobot::in_worlds(&plan.worlds, &settings, self.seed(seed))
     }
 
     /// The seed of its simulator, of a run's seed.
@@ -165,7 +165,7 @@ impl<'a, R: Robot> Playback<'a, R> {
         let mut recorded = Recorded(Choice { action, explored: record.explored });
         let (step, _) = advance(&mut self.cycle, &mut recorded, &mut self.played)?;
         self.done += 1;
-        self.must_recover = step.then.is_some();
+        self.must_recover = step.moves();
         Ok(Some(step))
     }
 

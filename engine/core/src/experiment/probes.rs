@@ -10,7 +10,7 @@ use crate::robot::Robot;
 use crate::settings::BodyShape;
 use crate::stats::Sorted;
 use crate::verdict::{AskedFigure, Probe, Request};
-use crate::world::FloorSquares;
+use crate::world::{FloorSquares, Layout};
 
 /// A contact is one with a mover that is no farther away than this, metres: a body stops a sixteenth of a tick before it.
 const TOUCHING_M: f64 = 0.01;
@@ -20,15 +20,21 @@ const TOUCHING_M: f64 = 0.01;
 pub(super) struct Probes {
     requests: Vec<Arc<Request>>,
     movers: Vec<MoverProbe>,
-    floor: Option<(FloorSquares, BodyShape)>,
-    course: Option<Course>,
+    /// By world; made of those in which the robot has been.
+    floors: Vec<Option<FloorSquares>>,
+    body: BodyShape,
+    /// By world.
+    courses: Vec<Course>,
+    /// The world in which the robot is.
+    at: usize,
     steps: u64,
 }
 
 /// The gaps to one mover.
 #[derive(Debug)]
 struct MoverProbe {
-    index: usize,
+    /// By world.
+    indices: Vec<usize>,
     name: String,
     /// After each step, metres.
     gaps_m: Vec<f32>,
@@ -41,18 +47,24 @@ impl Probes {
         let requests = plan.success().requests();
         let asked = |name: &str| requests.iter().any(|request| request.of.as_deref() == Some(name));
         let steps = plan.settings.run.test_steps as usize;
-        let movers = plan.layout.movers.iter().enumerate().filter(|(_, mover)| asked(&mover.name));
-        let movers = movers.map(|(index, mover)| {
+        let layouts = plan.worlds.layouts();
+        let movers = plan.layout.movers.iter().filter(|mover| asked(&mover.name));
+        let movers = movers.map(|mover| {
             let name = mover.name.clone();
-            MoverProbe { index, name, gaps_m: Vec::with_capacity(steps), contacts: 0 }
+            let index =
+                |layout: &Arc<Layout>| layout.movers.iter().position(|own| own.name == name).unwrap_or(usize::MAX);
+            let indices = layouts.iter().map(index).collect();
+            MoverProbe { indices, name, gaps_m: Vec::with_capacity(steps), contacts: 0 }
         });
         let movers = movers.collect();
         let body = plan.settings.robot.body;
         let covers = requests.iter().any(|request| request.probe == Probe::FloorCovered);
-        let floor = covers.then(|| FloorSquares::new(&plan.layout, &body)).flatten().map(|floor| (floor, body));
+        let floor = |layout: &Arc<Layout>| covers.then(|| FloorSquares::new(layout, &body)).flatten();
+        let floors = layouts.iter().map(floor).collect();
         let marks = [Probe::Visits, Probe::Gates, Probe::GateErrors];
         let asks = requests.iter().any(|request| marks.contains(&request.probe));
-        let mut probes = Self { requests, movers, floor, course: asks.then(|| Course::new(&plan.layout)), steps: 0 };
+        let courses = layouts.iter().filter(|_| asks).map(Course::new).collect();
+        let mut probes = Self { requests, movers, floors, body, courses, at: 0, steps: 0 };
         probes.put(robot);
         probes
     }
@@ -67,14 +79,18 @@ impl Probes {
 
     fn value(&self, request: &Request) -> Option<f64> {
         let steps = self.steps.max(1) as f64;
-        let course = self.course.as_ref();
+        let sum = |of: fn(&Course) -> u64| (!self.courses.is_empty()).then(|| self.courses.iter().map(of).sum::<u64>());
         match request.probe {
-            Probe::FloorCovered => return self.floor.as_ref().map(|(floor, _)| floor.covered()),
-            Probe::Visits => return Some(course?.visits(request.of.as_deref()?)? as f64 * 1000.0 / steps),
-            Probe::Gates => return Some(course?.passed as f64 * 1000.0 / steps),
+            Probe::FloorCovered => return FloorSquares::covered_of(self.floors.iter().flatten()),
+            Probe::Visits => {
+                let name = request.of.as_deref()?;
+                let visits = self.courses.iter().map(|course| course.visits(name));
+                return visits.reduce(|a, b| Some(a? + b?)).flatten().map(|visits| visits as f64 * 1000.0 / steps);
+            }
+            Probe::Gates => return sum(|course| course.passed).map(|passed| passed as f64 * 1000.0 / steps),
             Probe::GateErrors => {
-                let Course { passed, errors, .. } = course?;
-                return Some(*errors as f64 / (passed + errors).max(1) as f64);
+                let (passed, errors) = (sum(|course| course.passed)?, sum(|course| course.errors)?);
+                return Some(errors as f64 / (passed + errors).max(1) as f64);
             }
             Probe::Gap | Probe::GapError | Probe::ContactsWith => {}
         }
@@ -92,7 +108,8 @@ impl Probes {
 
     /// The robot was put somewhere.
     fn put(&mut self, robot: &impl Robot) {
-        if let (Some(course), Some(here)) = (&mut self.course, robot.whereabouts()) {
+        self.at = robot.world_index();
+        if let (Some(course), Some(here)) = (self.courses.get_mut(self.at), robot.whereabouts()) {
             course.put(Point2::new(here.pose.x_m, here.pose.y_m), robot.start());
         }
     }
@@ -101,16 +118,16 @@ impl Probes {
 impl<R: Robot> Observer<R> for Probes {
     fn stepped(&mut self, cycle: &Cycle<R>, step: &Step) -> ControlFlow<()> {
         for mover in &mut self.movers {
-            if let Some(gap_m) = cycle.robot().gap_m(mover.index) {
+            if let Some(gap_m) = cycle.robot().gap_m(mover.indices[self.at]) {
                 mover.contacts += u64::from(step.contact && gap_m <= TOUCHING_M);
                 mover.gaps_m.push(gap_m as f32);
             }
         }
-        if let (Some((floor, body)), Some(here)) = (&mut self.floor, cycle.robot().whereabouts()) {
-            floor.cover(body, here.pose);
+        if let (Some(Some(floor)), Some(here)) = (self.floors.get_mut(self.at), cycle.robot().whereabouts()) {
+            floor.cover(&self.body, here.pose);
         }
         self.steps += 1;
-        if let (Some(course), Some(here)) = (&mut self.course, cycle.robot().whereabouts()) {
+        if let (Some(course), Some(here)) = (self.courses.get_mut(self.at), cycle.robot().whereabouts()) {
             course.go(Point2::new(here.pose.x_m, here.pose.y_m));
         }
         ControlFlow::Continue(())

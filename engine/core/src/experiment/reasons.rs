@@ -42,6 +42,15 @@ pub struct StepReasons {
     pub pose: [f64; 3],
     /// The true pose of the prey, if there is one.
     pub prey: Option<[f32; 3]>,
+    /// Of a run in several worlds: the name of the one in which it was done.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub world_name: Option<String>,
+    /// What was drawn for its attempt: each key with its value.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub drawn: Vec<(String, String)>,
+    /// Whether the attempt was broken off after it, which is no outcome.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub hop: bool,
     /// Every rule, and `fn reward` last.
     pub rules: Vec<RuleReasons>,
     /// The guards that took actions away when this one was chosen.
@@ -165,6 +174,10 @@ impl StepReasons {
             ..RuleReasons::of(plan, text, cycle.judge(), rule)
         });
         let pose = record.pose;
+        let (attempt, layouts) = (ledger.attempt(index), plan.worlds.layouts());
+        let layout = &layouts[attempt.as_ref().map_or(0, |attempt| attempt.world).min(layouts.len() - 1)];
+        let keys = || plan.settings.randomise.iter();
+        let drawn = attempt.iter().flat_map(|attempt| keys().zip(&attempt.drawn));
         Ok(Some(Self {
             step: index,
             time_s: (index + 1) as f64 * plan.settings.run.period_s,
@@ -176,11 +189,14 @@ impl StepReasons {
             reward: step.reward,
             recover: step.then.is_some(),
             ending: step.ending().map(Ending::word),
-            to: step.to.map(|to| plan.layout.name_of(to).to_owned()),
+            to: step.to.map(|to| layout.name_of(to).to_owned()),
             contact: step.contact,
             fallen: record.fallen,
             pose: [pose.x_m, pose.y_m, pose.yaw_rad],
             prey: record.prey,
+            world_name: (layouts.len() > 1).then(|| layout.name.clone()),
+            drawn: drawn.map(|(varied, drawn)| (varied.key.clone(), varied.shown(*drawn))).collect(),
+            hop: step.hop,
             rules: rules.collect(),
             guards,
             used: used.filter(|_| step.driver.is_some()),

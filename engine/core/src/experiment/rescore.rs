@@ -12,8 +12,10 @@ use super::legs::first_fixed_difference;
 use super::{Ledger, Phase, Plan, Playback};
 use crate::allowed::Allowed;
 use crate::diagnostic::{Diagnostic, Result, printable};
+use crate::judge::Judge;
 use crate::learner::{Learner, Policy, Transition, shipped_learner};
 use crate::outcome::Then;
+use crate::robot::Robot;
 use crate::script::Behaviour;
 use crate::settings::{LearnerKind, SETTINGS, apply};
 
@@ -112,7 +114,7 @@ pub fn plan_with_rules_of(plan: &Plan, behaviour: Arc<Behaviour>) -> Result<Plan
             return other(&behaviour, &row.name(), &row.name()).fail();
         }
     }
-    Plan::with_layout(behaviour, settings, Arc::clone(&plan.layout), Arc::clone(&plan.filters))
+    Plan::with_worlds(behaviour, settings, plan.worlds.clone(), Arc::clone(&plan.filters))
 }
 
 fn other(behaviour: &Behaviour, what: &str, place: &str) -> Diagnostic {
@@ -133,18 +135,20 @@ fn other(behaviour: &Behaviour, what: &str, place: &str) -> Diagnostic {
 pub fn rescore(plan: &Plan, new: &Plan, seed: u64, ledger: &Ledger, passes: u64) -> Result<Rescored> {
     let mut playback = Playback::new(plan, seed, Phase::Learning, ledger)?;
     let mut judge = new.judge()?;
-    judge.facts_mut().clone_from(playback.cycle().facts());
-    judge.calibrate()?;
+    enter_world(&mut judge, &playback)?;
     let mut scores = [
         vec![RuleScore::default(); plan.behaviour.rules().len()],
         vec![RuleScore::default(); new.behaviour.rules().len()],
     ];
     let mut judged: [Vec<Judged>; 2] = [Vec::with_capacity(ledger.len()), Vec::with_capacity(ledger.len())];
-    while let Some(step) = playback.advance()? {
+    loop {
+        playback.seek(playback.done())?;
+        enter_world(&mut judge, &playback)?;
+        let Some(step) = playback.advance()? else { break };
         judge.facts_mut().clone_from(playback.cycle().facts());
         let verdict = judge.judge()?;
         let next_allowed = judge.leave().allowed;
-        if step.then.is_some() || verdict.then.is_some() {
+        if step.moves() || verdict.then.is_some() {
             judge.recovered();
         }
         for (scores, fired) in scores.iter_mut().zip([playback.cycle().fired(), judge.fired()]) {
@@ -153,7 +157,7 @@ pub fn rescore(plan: &Plan, new: &Plan, seed: u64, ledger: &Ledger, passes: u64)
                 score.total += value.unwrap_or(0.0);
             }
         }
-        let moved = step.then.is_some();
+        let moved = step.moves();
         judged[0].push(Judged { reward: step.reward, then: step.then, next_allowed: step.next_allowed, moved });
         judged[1].push(Judged { reward: verdict.reward, then: verdict.then, next_allowed, moved });
     }
@@ -188,6 +192,16 @@ fn rule_changes(old: &Plan, new: &Plan, scores: &[Vec<RuleScore>; 2]) -> Vec<Rul
         }
     }
     rules
+}
+
+/// Judges on in the world in which the robot is now; on coming there for the first time it is calibrated.
+fn enter_world(judge: &mut Judge, playback: &Playback<'_>) -> Result<()> {
+    judge.go_to(playback.cycle().robot().world_index());
+    if !judge.is_calibrated() {
+        judge.facts_mut().clone_from(playback.cycle().facts());
+        judge.calibrate()?;
+    }
+    Ok(())
 }
 
 /// What a plan's learner learns when it is led along recorded steps once; one-step Q-learning over more passes.

@@ -38,9 +38,17 @@ pub struct Step {
     pub guarded: bool,
     /// The actions that guards leave at the end.
     pub next_allowed: Allowed,
+    /// The attempt is broken off here, which is no outcome: the robot has stayed as long as it may, and goes on elsewhere.
+    pub hop: bool,
 }
 
 impl Step {
+    /// Whether the robot is put elsewhere after it.
+    #[must_use]
+    pub fn moves(&self) -> bool {
+        self.hop || self.then.is_some()
+    }
+
     /// How the attempt ended, if it did.
     #[must_use]
     pub fn ending(&self) -> Option<Ending> {

@@ -67,7 +67,7 @@ impl Summary {
         let success = plan.success();
         Self {
             behaviour: plan.behaviour.name().to_owned(),
-            world: plan.layout.name.clone(),
+            world: plan.worlds.title(),
             seed,
             steps,
             steps_per_second: 0.0,

@@ -30,6 +30,11 @@ impl LaserTold {
     pub(super) fn of(laser: &LaserSettings) -> Self {
         Self { range_m: (laser.min_range_m, laser.max_range_m), view_deg: laser.field_of_view_deg }
     }
+
+    /// From now on the laser reaches so far, metres.
+    pub(super) fn reaches(&mut self, max_range_m: f64) {
+        self.range_m.1 = max_range_m;
+    }
 }
 
 /// Fills in the facts of a judge, as seen through its eyes. Allocates nothing after the first time.

@@ -179,7 +179,7 @@ pub fn test_robot<R: Robot>(
 ) -> Result<TestRun> {
     let run = &plan.settings.run;
     let mut hash = StateHash::default();
-    let mut truth = Truth::new(cycle.robot(), &plan.layout, run.period_s, run.test_steps);
+    let mut truth = Truth::new(cycle.robot(), &plan.worlds, run.period_s, run.test_steps);
     let mut trail = Recorder::new(TRAIL_STEPS, cycle.robot());
     let mut glimpse = Glimpse::after(SNAPSHOT_STEP.min(run.test_steps));
     let tally = Tally::new(plan.behaviour.rules().len(), run.test_steps);
@@ -229,5 +229,10 @@ impl<R: Robot> Observer<R> for Counts<'_> {
             return ControlFlow::Break(());
         }
         ControlFlow::Continue(())
+    }
+
+    fn recovered(&mut self, _: &Cycle<R>) {
+        // After a hop another attempt begins.
+        self.attempt_steps = 0;
     }
 }

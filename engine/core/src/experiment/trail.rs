@@ -7,7 +7,7 @@ use crate::geometry::Pose;
 use crate::outcome::Ending;
 use crate::robot::Robot;
 
-/// A path: legs between recoveries, and where it failed and reached its goals.
+/// A path in the home world: legs between recoveries, and where it failed and reached its goals.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Trail {
     /// Places in the order of time, metres; a new leg begins after each recovery.
@@ -54,6 +54,9 @@ impl Recorder {
 impl<R: Robot> Observer<R> for Recorder {
     /// Adds the robot's place after a step.
     fn stepped(&mut self, cycle: &Cycle<R>, step: &Step) -> ControlFlow<()> {
+        if cycle.robot().world_index() > 0 {
+            return ControlFlow::Continue(());
+        }
         if self.left > 0
             && let Some(place) = place(cycle.robot())
         {
@@ -76,7 +79,7 @@ impl<R: Robot> Observer<R> for Recorder {
 
     /// Begins a new leg where the robot was put.
     fn recovered(&mut self, cycle: &Cycle<R>) {
-        if self.left > 0 {
+        if self.left > 0 && cycle.robot().world_index() == 0 {
             self.trail.legs.push(place(cycle.robot()).into_iter().collect());
         }
     }

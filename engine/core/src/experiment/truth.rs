@@ -1,13 +1,11 @@
 //! What a reward cannot see: where the robot really is, and whether it gets anywhere.
 
-use std::f64::consts::TAU;
-use std::ops::ControlFlow;
-use std::sync::Arc;
-
 use super::{Cycle, Observer, Step};
 use crate::geometry::{Point2, Pose, wrap_angle};
 use crate::robot::Robot;
-use crate::world::{Layout, RouteProgress};
+use crate::world::{RouteProgress, WorldSet};
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
 
 /// Seconds over which spinning, standing and circling are judged.
 const SPELL_S: f64 = 20.0;
@@ -19,9 +17,11 @@ const STANDING_M: f64 = 0.2;
 /// Follows the true pose through a test.
 #[derive(Debug, Clone)]
 pub(super) struct Truth {
-    layout: Arc<Layout>,
-    /// Along the lap route, if there is one.
-    pub(super) along: Option<Along>,
+    worlds: WorldSet,
+    /// The world in which the robot is.
+    at: usize,
+    /// Along the lap route of each world; none unless all have one.
+    alongs: Vec<Along>,
     last: Pose,
     /// Length of the path, metres.
     pub(super) distance_m: f64,
@@ -35,12 +35,14 @@ pub(super) struct Truth {
 
 /// Where a robot was beside the lap route.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Along {
+struct Along {
     progress: RouteProgress,
+    /// Length of the route, metres.
+    lap_m: f64,
     /// Steps that ended farther from it than its half width.
-    pub(super) off_steps: u64,
+    off_steps: u64,
     /// Sum of the distances from it after each step, metres.
-    pub(super) offsets_m: f64,
+    offsets_m: f64,
 }
 
 /// Counts of spells of 20 s.
@@ -72,17 +74,20 @@ struct Spell {
 impl Truth {
     /// Begins at the robot's present pose; `None` for a robot that does not know where it is.
     #[must_use]
-    pub(super) fn new(robot: &impl Robot, layout: &Arc<Layout>, period_s: f64, steps: u64) -> Option<Self> {
+    pub(super) fn new(robot: &impl Robot, worlds: &WorldSet, period_s: f64, steps: u64) -> Option<Self> {
         let pose = robot.whereabouts()?.pose;
-        let along = layout.lap.map(|lap| {
-            let progress = RouteProgress::new(&layout.routes[lap], Point2::new(pose.x_m, pose.y_m));
-            Along { progress, off_steps: 0, offsets_m: 0.0 }
-        });
+        let laps = worlds.layouts().iter().filter_map(|layout| layout.lap.map(|lap| &layout.routes[lap]));
+        let along = |route| {
+            let progress = RouteProgress::new(route, Point2::new(pose.x_m, pose.y_m));
+            Along { progress, lap_m: route.length_m(), off_steps: 0, offsets_m: 0.0 }
+        };
+        let alongs = laps.filter(|_| worlds.have_laps()).map(along).collect();
         let prey_m = Vec::with_capacity(if robot.prey().is_some() { steps as usize } else { 0 });
         let spell_steps = (SPELL_S / period_s).round().max(1.0) as u64;
         Some(Self {
-            layout: Arc::clone(layout),
-            along,
+            worlds: worlds.clone(),
+            at: robot.world_index(),
+            alongs,
             last: pose,
             distance_m: 0.0,
             spell: Spell::new(pose, 0.0),
@@ -99,8 +104,9 @@ impl Truth {
         self.spell.turn_rad += wrap_angle(pose.yaw_rad - self.last.yaw_rad);
         self.spell.steps += 1;
         self.last = pose;
-        if let (Some(along), Some(lap)) = (&mut self.along, self.layout.lap) {
-            along.progress.update(&self.layout.routes[lap], Point2::new(pose.x_m, pose.y_m));
+        let layout = &self.worlds.layouts()[self.at];
+        if let (Some(along), Some(lap)) = (self.alongs.get_mut(self.at), layout.lap) {
+            along.progress.update(&layout.routes[lap], Point2::new(pose.x_m, pose.y_m));
             along.off_steps += u64::from(!along.progress.is_on());
             along.offsets_m += along.progress.offset_m();
         }
@@ -112,19 +118,41 @@ impl Truth {
         }
     }
 
-    /// The robot was put elsewhere: no progress is counted for that, and the spell begins anew.
-    fn jump(&mut self, pose: Pose) {
-        if let (Some(Along { progress, .. }), Some(lap)) = (&mut self.along, self.layout.lap) {
-            progress.jump(&self.layout.routes[lap], Point2::new(pose.x_m, pose.y_m));
+    /// The robot was put elsewhere, perhaps into another world: no progress is counted for that, and the spell begins anew.
+    fn jump(&mut self, world: usize, pose: Pose) {
+        self.at = world;
+        let layout = &self.worlds.layouts()[world];
+        if let (Some(Along { progress, .. }), Some(lap)) = (self.alongs.get_mut(world), layout.lap) {
+            progress.jump(&layout.routes[lap], Point2::new(pose.x_m, pose.y_m));
         }
         self.last = pose;
         self.spell = Spell::new(pose, self.net_m().unwrap_or(0.0));
     }
 
-    /// Signed progress along the lap route, metres; `None` in a world without one.
+    /// Signed progress along the lap route of every world, metres; `None` unless all have one.
     #[must_use]
     pub(super) fn net_m(&self) -> Option<f64> {
-        self.along.as_ref().map(|along| along.progress.net_m())
+        self.sum(|along| along.progress.net_m())
+    }
+
+    /// Laps of every world's route.
+    pub(super) fn laps(&self) -> Option<f64> {
+        self.sum(|along| along.progress.net_m() / along.lap_m)
+    }
+
+    /// Steps that ended farther from the route than its half width.
+    pub(super) fn off_steps(&self) -> Option<f64> {
+        self.sum(|along| along.off_steps as f64)
+    }
+
+    /// Sum of the distances from the route after each step, metres.
+    pub(super) fn offsets_m(&self) -> Option<f64> {
+        self.sum(|along| along.offsets_m)
+    }
+
+    fn sum(&self, of: impl Fn(&Along) -> f64) -> Option<f64> {
+        // The sum of one is that one, to the last bit.
+        self.alongs.iter().map(of).reduce(|sum, one| sum + one)
     }
 
     fn end_spell(&mut self) {
@@ -156,7 +184,7 @@ impl<R: Robot> Observer<R> for Truth {
 
     fn recovered(&mut self, cycle: &Cycle<R>) {
         if let Some(here) = cycle.robot().whereabouts() {
-            self.jump(here.pose);
+            self.jump(cycle.robot().world_index(), here.pose);
         }
     }
 }

@@ -4,6 +4,7 @@ use super::compiled::{CompiledScript, Look};
 use super::evaluate::{Judgement, Present};
 use super::facts::{Facts, NO_ACTION, StageFacts};
 use super::guards::{Guarding, Leave};
+use super::judged_world::JudgedWorld;
 use super::memory::Memory;
 use super::odometry::Odometry;
 use super::readings::{self, PartRead};
@@ -42,6 +43,9 @@ pub struct Judge {
     is_past: bool,
     /// What guards take away of the actions.
     guarding: Guarding,
+    /// What was made for each world; of the present one it is above.
+    elsewhere: Vec<JudgedWorld>,
+    world: usize,
 }
 
 /// The present stage, and what the wheels had counted when it was entered.
@@ -90,6 +94,8 @@ impl Judge {
             is_taken: false,
             is_past: false,
             guarding: Guarding::default(),
+            elsewhere: Vec::new(),
+            world: 0,
         }
     }
 
@@ -123,14 +129,33 @@ impl Judge {
         &self.guarding
     }
 
-    /// The judge in a world whose starts have these names.
+    /// The judge in worlds whose starts have these names, now in the first of them.
     #[must_use]
-    pub(crate) fn in_world(mut self, starts: Vec<String>) -> Self {
-        let rules = self.present.compiled.rules.iter();
-        let places = rules.map(|rule| rule.to_place.as_ref().and_then(|(place, _)| Destination::of(place, &starts)));
-        self.destinations = places.collect();
-        self.present.starts = Some(starts);
+    pub(crate) fn in_worlds(mut self, worlds: impl Iterator<Item = Vec<String>>) -> Self {
+        self.elsewhere = worlds.map(|starts| JudgedWorld::new(&self.present.compiled, starts)).collect();
+        self.swap_world();
         self
+    }
+
+    /// From here on in another of its worlds: what was calibrated there is known again. Allocates nothing.
+    pub(crate) fn go_to(&mut self, world: usize) {
+        if world != self.world {
+            self.swap_world();
+            self.world = world;
+            self.swap_world();
+        }
+    }
+
+    fn swap_world(&mut self) {
+        if let Some(other) = self.elsewhere.get_mut(self.world) {
+            other.swap(&mut self.destinations, &mut self.present);
+        }
+    }
+
+    /// Whether `fn calibrate` has run in this world, if there is one.
+    #[must_use]
+    pub(crate) fn is_calibrated(&self) -> bool {
+        self.present.calibrated.is_some()
     }
 
     /// The facts of the last step.

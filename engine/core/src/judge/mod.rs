@@ -15,6 +15,7 @@ pub(crate) mod facts;
 pub(crate) mod functions;
 mod ground_facts;
 pub(crate) mod guards;
+mod judged_world;
 mod judging;
 pub(crate) mod memory;
 pub(crate) mod needs;

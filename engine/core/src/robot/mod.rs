@@ -3,17 +3,21 @@
 //! The loop takes observations and gives twists; it cannot tell the simulator from a real robot. What a robot may know
 //! beside its sensors, where it truly is, serves tests, records and pictures only: no script, state or learner sees it.
 
+mod journey;
 mod recovery;
 mod simulated;
+mod site;
 mod starts_in_use;
+mod variation;
 
 use crate::diagnostic::Result;
 use crate::geometry::{Pose, Twist};
 use crate::outcome::Destination;
 use crate::sensors::observation::{Image, Observation};
 
-use recovery::Recovery;
 pub use simulated::SimulatedRobot;
+pub(crate) use site::seed_of_world;
+pub(crate) use variation::speeds_of_movers;
 
 /// What the step loop needs of a robot.
 pub trait Robot {
@@ -49,6 +53,21 @@ pub trait Robot {
     /// Where the robot is, if anything but its own sensors knows: the truth of a simulator, or a localiser in a mapped
     /// place. Without an answer, a test has no laps, paths or distances.
     fn whereabouts(&self) -> Option<Whereabouts> {
+        None
+    }
+
+    /// Of a robot that goes from world to world, the number of the one where it is: 0 is the home world.
+    fn world_index(&self) -> usize {
+        0
+    }
+
+    /// What was drawn for the present attempt, in the order of `randomise`: numbers; of words and flags, which of them it is.
+    fn drawn(&self) -> &[f64] {
+        &[]
+    }
+
+    /// The greatest range of its laser, metres, if that changes from attempt to attempt.
+    fn laser_max_range_m(&self) -> Option<f64> {
         None
     }
 
@@ -89,8 +108,9 @@ pub trait Robot {
 pub struct Ended {
     /// Where the next one is to begin; nothing for the usual place.
     pub to: Option<Destination>,
-    /// It went well: it ended in a goal or, where there are none, in a restart or after 400 steps.
-    pub good: bool,
+    /// Whether it went well: it ended in a goal or, where there are none, in a restart or after 400 steps. Nothing if it was
+    /// broken off before that could be told.
+    pub good: Option<bool>,
 }
 
 /// Where a robot is in its world.

@@ -29,6 +29,9 @@ pub(super) struct Recovery {
     usual: Destination,
     starts: StartsInUse,
     random: Random,
+    /// Added to every start or place: metres to its left, and a turn to the left.
+    shift_m: f64,
+    turn_rad: f64,
 }
 
 impl Recovery {
@@ -46,7 +49,30 @@ impl Recovery {
             usual: named.map_or(Destination::Word(recovery.to), Destination::Start),
             starts: StartsInUse::new(listed, starts.widen),
             random: Random::new(seed, Stream::Recovery),
+            shift_m: 0.0,
+            turn_rad: 0.0,
         }
+    }
+
+    /// Puts the robot where other settings say, so far to the left of it and turned so far to the left.
+    pub(super) fn change(&mut self, settings: &Settings, shift_m: f64, yaw_deg: f64) {
+        let RecoverySettings { to, distance_m, position_m, yaw_deg: most_deg, .. } = settings.recovery;
+        if to != self.settings.to {
+            self.usual = Destination::Word(to);
+        }
+        (self.settings.to, self.settings.distance_m) = (to, distance_m);
+        (self.settings.position_m, self.settings.yaw_deg) = (position_m, most_deg);
+        (self.shift_m, self.turn_rad) = (shift_m, yaw_deg.to_radians());
+    }
+
+    /// The robot comes from another world: as many starts are in use as there.
+    pub(super) fn go_on_from(&mut self, other: &Self) {
+        self.starts.go_on_from(&other.starts);
+    }
+
+    /// Whether the usual place is the nearest one on the lap route.
+    pub(super) fn is_nearest(&self) -> bool {
+        self.usual == Destination::Word(RecoverTo::Nearest)
     }
 
     /// Counts an attempt that has ended, by the start where it began.
@@ -129,8 +155,18 @@ impl Recovery {
         })
     }
 
+    /// A place with what is added to every place.
+    fn displaced(&self, pose: Pose) -> Pose {
+        if self.shift_m == 0.0 && self.turn_rad == 0.0 {
+            return pose;
+        }
+        let (sin, cos) = libm::sincos(pose.yaw_rad);
+        Pose::new(pose.x_m - self.shift_m * sin, pose.y_m + self.shift_m * cos, pose.yaw_rad + self.turn_rad)
+    }
+
     fn shifted(&mut self, pose: Pose) -> Pose {
         let (shift, turn) = (self.settings.position_m, self.settings.yaw_deg.to_radians());
+        let pose = self.displaced(pose);
         Pose::new(
             pose.x_m + self.random.between(-shift, shift),
             pose.y_m + self.random.between(-shift, shift),

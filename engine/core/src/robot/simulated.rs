@@ -2,82 +2,84 @@
 
 use std::sync::Arc;
 
-use super::{Ended, Recovery, Robot, Whereabouts};
+use super::journey::Journey;
+use super::site::{Site, in_view};
+use super::{Ended, Robot, Whereabouts};
 use crate::diagnostic::Result;
 use crate::geometry::{Pose, Twist};
 use crate::sensors::observation::{Image, Observation};
-use crate::sensors::{Camera, CameraWatch, GroundSensors, Laser, self_test};
-use crate::settings::{CameraSettings, GroundSettings, Settings};
-use crate::world::scene::Solid;
-use crate::world::{Layout, Motion, World};
+use crate::sensors::{CameraWatch, self_test};
+use crate::settings::Settings;
+use crate::world::{Layout, Motion, World, WorldSet};
 
-/// A robot with a body, a camera and a laser, in a world.
+/// A robot with a body, a camera and a laser, in a world; or in one world after another.
 pub struct SimulatedRobot {
-    world: World,
-    camera: Camera,
-    laser: Laser,
-    ground_at: GroundSettings,
-    /// Made when somebody first asks for the ground.
-    ground: Option<GroundSensors>,
+    here: Site,
+    /// The other worlds, and what is drawn; nothing of a robot that stays in one world as it is.
+    journey: Option<Box<Journey>>,
     watch: CameraWatch,
-    recovery: Recovery,
     motion: Motion,
     moved: bool,
-    /// Where the camera sees the robot's own body: what it sees that moves, and room for it.
-    own: Option<Vec<Solid>>,
     /// The start at which it was put last, if it was one.
     start: Option<usize>,
 }
 
 impl SimulatedRobot {
-    /// A robot at a safe pose of the world, its camera tested.
+    /// A robot at a safe pose of one world, its camera tested; what the settings vary is drawn.
     ///
     /// # Errors
     /// If no pose is safe, or the camera shows nothing from there.
     pub fn new(layout: &Arc<Layout>, settings: &Settings, seed: u64) -> Result<Self> {
-        let mut world = World::new(Arc::clone(layout), &[settings.robot], settings.run.period_s, seed)
-            .with_mover_speed(settings.movers.speed);
-        let camera = Camera::new(&layout.scene, &settings.camera, seed);
-        let laser = Laser::new(&layout.scene, &settings.laser, seed);
-        let mut recovery = Recovery::new(settings, layout, seed);
-        let put = recovery.pose(&world, None)?;
-        world.place(0, put.pose);
+        Self::in_worlds(&WorldSet::alone(Arc::clone(layout)), settings, seed)
+    }
+
+    /// A robot at a safe pose of the first of several worlds. After each attempt it is put into the next one that is drawn;
+    /// all are made here.
+    ///
+    /// # Errors
+    /// As [`SimulatedRobot::new`].
+    pub fn in_worlds(worlds: &WorldSet, settings: &Settings, seed: u64) -> Result<Self> {
+        let mut here = Site::new(worlds.home(), settings, seed, 0);
+        let varies = !worlds.further().is_empty() || !settings.randomise.is_empty();
+        let mut journey = varies.then(|| Box::new(Journey::new(worlds, settings, seed)));
+        let mut settings = settings;
+        if let Some(journey) = &mut journey {
+            settings = journey.set_out(&mut here);
+        }
+        let put = here.recovery.pose(&here.world, None)?;
+        here.world.place(0, put.pose);
         // Noise would hide a blank image from the test.
-        let mut quiet = Camera::new(&layout.scene, &CameraSettings { noise: 0.0, ..settings.camera.clone() }, seed);
-        let mut own = settings.camera.own_body.then(|| Vec::with_capacity(world.seen_by(0).len() + 1));
-        self_test(&mut quiet, &world.body(0).world_from_robot(), in_view(&world, &mut own))?;
+        let mut quiet = here.quiet_camera(&settings.camera);
+        self_test(&mut quiet, &here.world.body(0).world_from_robot(), in_view(&here.world, &mut here.own))?;
         let (watch, motion) = (CameraWatch::new(), Motion::default());
-        let (start, ground_at, ground) = (put.start, settings.ground.clone(), None);
-        Ok(Self { world, camera, laser, ground_at, ground, watch, recovery, motion, moved: false, own, start })
+        Ok(Self { here, journey, watch, motion, moved: false, start: put.start })
+    }
+
+    /// Tries the ends of all that these settings draw in one world.
+    ///
+    /// # Errors
+    /// For the first with which no pose is safe, or the camera shows nothing.
+    pub(crate) fn try_extremes(layout: &Arc<Layout>, settings: &Settings) -> Result<()> {
+        super::variation::extremes(settings).try_for_each(|extreme| Self::new(layout, &extreme, 0).map(drop))
     }
 
     /// The truth, for tests and reports only.
     #[must_use]
     pub fn world(&self) -> &World {
-        &self.world
+        &self.here.world
     }
-}
-
-/// What the camera sees that does not belong to the scene: what moves, and the robot's own body if `own` has room for it.
-fn in_view<'a>(world: &'a World, own: &'a mut Option<Vec<Solid>>) -> &'a [Solid] {
-    let Some(solids) = own else { return world.seen_by(0) };
-    solids.clear();
-    solids.extend_from_slice(world.seen_by(0));
-    solids.push(world.solid_of(0));
-    solids
 }
 
 impl Robot for SimulatedRobot {
     fn observe(&mut self, observation: &mut Observation) -> Result<()> {
-        let world_from_robot = self.world.body(0).world_from_robot();
-        let moving = in_view(&self.world, &mut self.own);
-        self.camera.render(&world_from_robot, moving, &mut observation.image);
+        let here = &mut self.here;
+        let world_from_robot = here.world.body(0).world_from_robot();
+        let moving = in_view(&here.world, &mut here.own);
+        here.camera.render(&world_from_robot, moving, &mut observation.image);
         self.watch.check(&observation.image, self.moved)?;
-        self.laser.scan(&world_from_robot, self.world.seen_by(0), &mut observation.scan);
+        here.laser.scan(&world_from_robot, here.world.seen_by(0), &mut observation.scan);
         if let Some(colours) = &mut observation.ground {
-            let scene = &self.world.layout().scene;
-            let ground = self.ground.get_or_insert_with(|| GroundSensors::new(scene, &self.ground_at));
-            *colours = ground.read(&world_from_robot);
+            *colours = here.ground().read(&world_from_robot);
         }
         observation.contact = self.motion.contact;
         observation.fallen = self.motion.fallen;
@@ -86,9 +88,10 @@ impl Robot for SimulatedRobot {
     }
 
     fn act(&mut self, twist: Twist) -> Result<()> {
-        let before = self.world.body(0).pose;
-        self.motion = self.world.advance(&[twist]).first().copied().unwrap_or_default();
-        self.moved = self.world.body(0).pose != before;
+        let world = &mut self.here.world;
+        let before = world.body(0).pose;
+        self.motion = world.advance(&[twist]).first().copied().unwrap_or_default();
+        self.moved = world.body(0).pose != before;
         Ok(())
     }
 
@@ -97,10 +100,16 @@ impl Robot for SimulatedRobot {
     }
 
     fn recover_after(&mut self, ended: Ended) -> Result<()> {
-        self.recovery.count(self.start, ended.good);
-        self.world.begin_attempt();
-        let put = self.recovery.pose(&self.world, ended.to)?;
-        self.world.place(0, put.pose);
+        if let Some(good) = ended.good {
+            self.here.recovery.count(self.start, good);
+        }
+        let to = match &mut self.journey {
+            Some(journey) => journey.go_on(&mut self.here, ended.to),
+            None => ended.to,
+        };
+        self.here.world.begin_attempt();
+        let put = self.here.recovery.pose(&self.here.world, to)?;
+        self.here.world.place(0, put.pose);
         self.start = put.start;
         self.motion = Motion::default();
         self.moved = true;
@@ -108,12 +117,24 @@ impl Robot for SimulatedRobot {
     }
 
     fn whereabouts(&self) -> Option<Whereabouts> {
-        let body = self.world.body(0);
+        let body = self.here.world.body(0);
         Some(Whereabouts { pose: body.pose, z_m: body.z_m })
     }
 
+    fn world_index(&self) -> usize {
+        self.journey.as_ref().map_or(0, |journey| journey.at())
+    }
+
+    fn drawn(&self) -> &[f64] {
+        self.journey.as_ref().map_or(&[], |journey| journey.drawn())
+    }
+
+    fn laser_max_range_m(&self) -> Option<f64> {
+        self.journey.as_ref().and_then(|journey| journey.max_range_m())
+    }
+
     fn starts_in_use(&self) -> usize {
-        self.recovery.starts_in_use()
+        self.here.recovery.starts_in_use()
     }
 
     fn start(&self) -> Option<usize> {
@@ -121,20 +142,20 @@ impl Robot for SimulatedRobot {
     }
 
     fn mover(&self, index: usize) -> Option<Pose> {
-        self.world.mover(index)
+        self.here.world.mover(index)
     }
 
     fn gap_m(&self, mover: usize) -> Option<f64> {
-        self.world.gap_m(0, mover)
+        self.here.world.gap_m(0, mover)
     }
 
     /// Call it before anything moves: the frame is drawn a second time.
     fn photograph(&self) -> Option<Image> {
-        let mut camera = self.camera.clone();
+        let mut camera = self.here.camera.clone();
         camera.set_frames(camera.frames().saturating_sub(1));
         let mut image = Image::new(0, 0);
-        let mut own = self.own.clone();
-        camera.render(&self.world.body(0).world_from_robot(), in_view(&self.world, &mut own), &mut image);
+        let mut own = self.here.own.clone();
+        camera.render(&self.here.world.body(0).world_from_robot(), in_view(&self.here.world, &mut own), &mut image);
         Some(image)
     }
 }
@@ -143,7 +164,7 @@ impl Robot for SimulatedRobot {
 mod tests {
     use super::*;
     use crate::diagnostic::SourceText;
-    use crate::settings::RecoverTo;
+    use crate::settings::{CameraSettings, RecoverTo};
     use filter_api::Format;
 
     #[test]

@@ -27,6 +27,14 @@ impl StartsInUse {
         &self.starts[..self.in_use]
     }
 
+    /// Goes on from the same list in another world.
+    pub(super) fn go_on_from(&mut self, other: &Self) {
+        if self.widen.is_some() {
+            self.in_use = other.in_use.min(self.starts.len());
+            (self.last, self.attempts) = (other.last, other.attempts);
+        }
+    }
+
     /// Counts an attempt that began at a start, if that is one of those in use; perhaps the next one joins.
     pub(super) fn count(&mut self, start: Option<usize>, good: bool) {
         let Some(share) = self.widen.filter(|_| self.in_use < self.starts.len()) else { return };

@@ -51,6 +51,12 @@ impl Behaviour {
         let stages = !compiled.stages.is_empty();
         let endable = Endable { stages, ..endable(&compiled.rules, outline.reward_recovers) };
         let compiled = Arc::new(compiled);
+        let mut settings = settings;
+        let restarts = compiled.rules.iter().any(|rule| rule.then == Some(Then::Restart));
+        // An attempt that ends by itself is not broken off.
+        if !places.contains_key("run.stay_steps") && (endable.goal || restarts) {
+            settings.run.stay_steps = 0;
+        }
         Self {
             name: name.to_owned(),
             settings,

@@ -36,6 +36,7 @@ mod setup;
 mod setup_stages;
 mod setup_table;
 mod setup_views;
+mod setup_worlds;
 mod source;
 mod spoilt;
 mod starts;

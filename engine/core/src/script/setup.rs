@@ -177,8 +177,11 @@ impl SetupReader<'_> {
         match (name, first, second, arguments.next()) {
             ("world", Some(world), None, None) if world.is_string() => {
                 self.settings.world = self.word(world, form)?;
-                self.mark("world".to_owned(), self.call)
+                self.mark("world".to_owned(), self.call)?;
+                self.check_worlds_alone(form)
             }
+            ("worlds", Some(list), None, None) if list.is_array() || list.is_map() => self.worlds(list, form),
+            ("randomise", Some(map), None, None) if map.is_map() => self.randomise(map.cast::<Map>(), form),
             ("filter", Some(filter), parameters, None) if filter.is_string() => {
                 self.in_unnamed_view(|setup, view| setup.filter(view, filter, parameters, form))
             }
@@ -219,7 +222,10 @@ impl SetupReader<'_> {
                 map.map_or(Ok(()), |map| self.group(name, map, form))
             }
             (group, Some(map), None, None)
-                if !matches!(group, "world" | "filter" | "view" | "actions" | "stages" | "starts" | "policy") =>
+                if !matches!(
+                    group,
+                    "world" | "worlds" | "randomise" | "filter" | "view" | "actions" | "stages" | "starts" | "policy"
+                ) =>
             {
                 self.group(group, map, form)
             }

@@ -24,6 +24,16 @@ pub(super) const SETUP: &[SetupCall] = &[
     ),
     row("world", "world(\"room\");", "The world to learn in: its name, or the path of a world file."),
     row(
+        "worlds",
+        "worlds(#{ \"room\": 3, \"corridors:1-12\": 1 });",
+        "Several worlds, equally likely or by weights: after each attempt the next one is drawn. `corridors:7` is made by rule, `corridors:1-12` are twelve that share one weight.",
+    ),
+    row(
+        "randomise",
+        "randomise(#{ \"camera.tilt_deg\": [40, 44] });",
+        "What is drawn anew for each attempt: from a range of two numbers, or one of three or more numbers, of words or of flags.",
+    ),
+    row(
         "filter",
         "filter(\"sobel\", #{ threshold: 60 });",
         "One stage of the filter chain; several calls make a chain.",

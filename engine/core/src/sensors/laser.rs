@@ -78,9 +78,14 @@ impl Laser {
         }
     }
 
+    /// How many scans were taken: with the seed, the address of the next scan's noise.
+    #[must_use]
+    pub(crate) fn scans(&self) -> u64 {
+        self.scans
+    }
+
     /// Continues as if `scans` scans had been taken.
-    #[cfg(test)]
-    pub(super) fn set_scans(&mut self, scans: u64) {
+    pub(crate) fn set_scans(&mut self, scans: u64) {
         self.scans = scans;
     }
 

@@ -30,11 +30,13 @@ impl Settings {
     pub(super) fn of_every_edition() -> Self {
         Self {
             world: "room".to_owned(),
+            worlds: Vec::new(),
+            randomise: Vec::new(),
             view: ViewSettings::named(UNNAMED_VIEW),
             further_views: Vec::new(),
             state: Vec::new(),
             actions: PAPER_ACTIONS.iter().map(|&(linear, angular)| Twist::new(linear, angular)).collect(),
-            run: RunSettings { steps: 5_200, test_steps: 5_000, period_s: 0.5 },
+            run: RunSettings { steps: 5_200, test_steps: 5_000, period_s: 0.5, stay_steps: 150 },
             robot: RobotSettings {
                 body: BodyShape::pioneer2at(),
                 drive: DriveLimits::default(),

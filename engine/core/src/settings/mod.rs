@@ -12,6 +12,7 @@ mod edition;
 mod fan;
 mod shipped_bodies;
 mod table;
+mod variation;
 mod views;
 mod words;
 
@@ -23,6 +24,7 @@ pub use edition::Edition;
 pub use fan::ScanFan;
 pub(crate) use shipped_bodies::{SHIPPED_BODIES, shipped_body};
 pub use table::{SETTINGS, Setting, SettingError, SettingShape, Value, apply};
+pub use variation::{DrawnFrom, Varied, VariedKey, WorldShare};
 pub use views::{CONDITION, FilterSettings, GridSettings, PartSettings, UNNAMED_VIEW, ViewSettings};
 pub use words::{CombineWay, LearnerKind, Lens, RecoverTo};
 
@@ -31,6 +33,10 @@ pub use words::{CombineWay, LearnerKind, Lens, RecoverTo};
 pub struct Settings {
     /// Name of a world, or path of a world file.
     pub world: String,
+    /// Several worlds with their weights, in the order in which they are drawn; empty for the one above.
+    pub worlds: Vec<WorldShare>,
+    /// What is drawn anew for each attempt, in this order.
+    pub randomise: Vec<Varied>,
     /// How the robot looks at the image: the unnamed view, or the first one that a script names.
     pub view: ViewSettings,
     /// The views after the first, in the order of the script.
@@ -81,6 +87,7 @@ pub struct RunSettings {
     pub steps: u64,
     pub test_steps: u64,
     pub period_s: f64,
+    pub stay_steps: u64,
 }
 
 /// A robot's body and motion.
@@ -208,6 +215,12 @@ impl Settings {
         }
         if from.world != to.world {
             self.world.clone_from(&to.world);
+        }
+        if from.worlds != to.worlds {
+            self.worlds.clone_from(&to.worlds);
+        }
+        if from.randomise != to.randomise {
+            self.randomise.clone_from(&to.randomise);
         }
         if from.view.filters != to.view.filters {
             self.view.filters.clone_from(&to.view.filters);

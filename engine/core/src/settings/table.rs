@@ -135,6 +135,7 @@ settings! {
     run.steps, "steps", Whole(1, 1_000_000_000), "How long to learn.";
     run.test_steps, "steps", Whole(1, 1_000_000_000), "How long to test the frozen policy afterwards.";
     run.period_s, "seconds", Number(0.05, 5.0), "Time between two actions.";
+    run.stay_steps, "steps", Whole(0, 1_000_000_000), "With several worlds or with `randomise`: how long an attempt lasts at most; 0 is for ever, and the default of a script that can reach a goal or restarts.";
     robot.lag_s, "seconds", Number(0.0, 2.0), "Time constant with which the wheels follow a command.";
     robot.speed_noise, "share", Number(0.0, 0.5), "Deviation of the real speeds from the commanded ones.";
     robot.slip, "share", Number(0.0, 0.5), "Share of a turn that the skidding wheels lose.";
@@ -196,26 +197,34 @@ impl Setting {
     /// What it may be, in words: `-30 to 90 degrees`.
     #[must_use]
     pub fn allowed(&self) -> String {
-        let unit = if self.unit.is_empty() { String::new() } else { format!(" ({})", self.unit) };
-        match self.shape {
-            SettingShape::Number(min, max) => format!("{min} to {max}{unit}"),
-            SettingShape::Whole(min, max) => format!("a whole number from {min} to {max}{unit}"),
-            SettingShape::Flag => "true or false".to_owned(),
-            SettingShape::Choice(words) => {
-                words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(" or ")
+        self.shape.allowed(self.unit)
+    }
+}
+
+impl SettingShape {
+    /// Whether it may be this value.
+    #[must_use]
+    pub fn accepts(self, value: &Value) -> bool {
+        match (self, value) {
+            (Self::Number(min, max), Value::Number(number)) => (min..=max).contains(number),
+            (Self::Whole(min, max), Value::Number(number)) => {
+                number.fract() == 0.0 && (min as f64..=max as f64).contains(number)
             }
+            (Self::Flag, Value::Flag(_)) => true,
+            (Self::Choice(words), Value::Text(text)) => words.contains(&text.as_str()),
+            _ => false,
         }
     }
 
-    fn accepts(&self, value: &Value) -> bool {
-        match (self.shape, value) {
-            (SettingShape::Number(min, max), Value::Number(number)) => (min..=max).contains(number),
-            (SettingShape::Whole(min, max), Value::Number(number)) => {
-                number.fract() == 0.0 && (min as f64..=max as f64).contains(number)
-            }
-            (SettingShape::Flag, Value::Flag(_)) => true,
-            (SettingShape::Choice(words), Value::Text(text)) => words.contains(&text.as_str()),
-            _ => false,
+    /// What it may be, in words; `unit` in words too, or empty.
+    #[must_use]
+    pub fn allowed(self, unit: &str) -> String {
+        let unit = if unit.is_empty() { String::new() } else { format!(" ({unit})") };
+        match self {
+            Self::Number(min, max) => format!("{min} to {max}{unit}"),
+            Self::Whole(min, max) => format!("a whole number from {min} to {max}{unit}"),
+            Self::Flag => "true or false".to_owned(),
+            Self::Choice(words) => words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(" or "),
         }
     }
 }
@@ -238,7 +247,7 @@ pub fn apply(settings: &mut Settings, group: &str, key: &str, value: &Value) -> 
     let Some(row) = SETTINGS.iter().find(|row| row.group == group && row.key == key) else {
         return Err(unknown(group, key));
     };
-    if !row.accepts(value) {
+    if !row.shape.accepts(value) {
         return Err(SettingError {
             message: format!("'{}' must be {}", row.key, row.allowed()),
             found: format!("found {value}"),
@@ -285,7 +294,7 @@ mod tests {
     fn every_default_is_within_its_own_range() {
         let settings = Settings::default();
         for row in SETTINGS {
-            assert!(row.accepts(&(row.get)(&settings)), "{}", row.name());
+            assert!(row.shape.accepts(&(row.get)(&settings)), "{}", row.name());
         }
     }
 

@@ -46,6 +46,12 @@ impl Drivetrain {
         }
     }
 
+    /// Becomes the drive of other settings; its random numbers go on.
+    pub(super) fn change(&mut self, robot: &RobotSettings, period_s: f64) {
+        let Self { wheels, factors, random, .. } = self.clone();
+        *self = Self { wheels, factors, ..Self::new(robot, period_s, random) };
+    }
+
     /// Stands still.
     pub(super) fn stop(&mut self) {
         self.wheels = Twist::default();

@@ -90,10 +90,13 @@ impl FloorSquares {
         self.covered += self.mark(body, pose, Square::Reachable, Square::Covered);
     }
 
-    /// Covered squares as a share of the reachable ones; 0 where none can be reached.
+    /// Covered squares as a share of the reachable ones, over the floors on which the body has been; nothing without a floor.
     #[must_use]
-    pub(crate) fn covered(&self) -> f64 {
-        self.covered as f64 / self.reachable.max(1) as f64
+    pub(crate) fn covered_of<'a>(floors: impl Iterator<Item = &'a Self> + Clone) -> Option<f64> {
+        let been = || floors.clone().filter(|floor| floor.covered > 0);
+        let (covered, reachable): (u64, u64) =
+            (been().map(|floor| floor.covered).sum(), been().map(|floor| floor.reachable).sum());
+        floors.clone().next().map(|_| covered as f64 / reachable.max(1) as f64)
     }
 
     /// Turns the squares under a body that are `from` into `to`, and counts them.
@@ -181,7 +184,7 @@ mod tests {
         let floor = FloorSquares::new(&room(), &round()).unwrap();
         // The lattice begins at (-3.2, -2.2), so there are 16 by 8 middles in the room; a round body cannot get into corners.
         assert!((110..=128).contains(&floor.reachable), "{}", floor.reachable);
-        assert_eq!(floor.covered(), 0.0);
+        assert_eq!(FloorSquares::covered_of([&floor].into_iter()), Some(0.0));
     }
 
     #[test]
@@ -189,13 +192,17 @@ mod tests {
         let mut floor = FloorSquares::new(&room(), &round()).unwrap();
         let (body, at) = (round(), |x_m: f64| Pose { x_m, y_m: 0.0, yaw_rad: 0.0 });
         floor.cover(&body, at(0.0));
-        let once = floor.covered();
+        let share = |floor: &FloorSquares| FloorSquares::covered_of([floor].into_iter()).unwrap();
+        let once = share(&floor);
         floor.cover(&body, at(0.0));
-        assert_eq!(floor.covered(), once);
+        assert_eq!(share(&floor), once);
         // 0.28 square metres are 4.5 squares.
         assert!((3..=6).contains(&floor.covered), "{}", floor.covered);
         floor.cover(&body, at(1.0));
-        assert!(floor.covered() > 1.5 * once);
+        assert!(share(&floor) > 1.5 * once);
+        // Where it has not been does not count, and one floor as large with nothing covered would halve it.
+        let other = FloorSquares::new(&room(), &round()).unwrap();
+        assert_eq!(FloorSquares::covered_of([&floor, &other].into_iter()), Some(share(&floor)));
     }
 
     #[test]

@@ -6,6 +6,7 @@
 mod body;
 mod contact;
 mod drivetrain;
+mod families;
 mod floor_squares;
 mod layout;
 pub(crate) mod marks;
@@ -22,8 +23,10 @@ mod terrain;
 mod tests;
 mod traffic;
 mod vehicle;
+mod world_set;
 
 pub use body::{Body, Motion};
+pub use families::{FAMILIES, FamilyRange};
 pub(crate) use floor_squares::FloorSquares;
 pub use layout::Layout;
 pub use marks::{Circle, Gate, Start};
@@ -31,6 +34,7 @@ pub use movements::Movements;
 pub use mover::Mover;
 pub use route::Route;
 pub(crate) use route_progress::RouteProgress;
+pub use world_set::WorldSet;
 
 use crate::geometry::{Point2, Pose, Twist};
 use crate::random::{Random, Stream};
@@ -95,6 +99,21 @@ impl World {
     #[must_use]
     pub fn with_mover_speed(self, speed: f64) -> Self {
         Self { movements: self.movements.scaled(speed), ..self }
+    }
+
+    /// From here on the drive of a body is another one: it lags, slips and is noisy as these settings say. The body stays.
+    ///
+    /// # Panics
+    /// If there is no such body.
+    pub(crate) fn change_drive(&mut self, index: usize, robot: &RobotSettings) {
+        self.vehicles[index].change_drive(robot, self.period_s);
+    }
+
+    /// From here on a mover is so many times as fast as its file says; of one that knows nothing but its speed the place
+    /// becomes that at which it would be, had it always been so fast.
+    pub(crate) fn set_mover_speed(&mut self, index: usize, speed: f64) {
+        self.movements.set_scale(index, speed);
+        self.traffic.arrange(&self.layout.movers, &self.movements);
     }
 
     /// An attempt begins: movers whose file says so draw their speed, or begin anew.

@@ -18,7 +18,8 @@ pub struct Movements {
     /// For each mover that does more than follow its route at one speed.
     rides: Vec<Option<Ride>>,
     random: Random,
-    scale: f64,
+    /// For each mover, how many times as fast as its file says it is.
+    scales: Vec<f64>,
     time_s: f64,
 }
 
@@ -27,14 +28,21 @@ impl Movements {
     #[must_use]
     pub fn new(layout: Arc<Layout>, seed: u64, scale: f64) -> Self {
         let rides = vec![None; layout.movers.len()];
-        let random = Random::new(seed, Stream::Movers);
-        let mut movements = Self { layout, rides, random, scale, time_s: 0.0 };
+        let (random, scales) = (Random::new(seed, Stream::Movers), vec![scale; layout.movers.len()]);
+        let mut movements = Self { layout, rides, random, scales, time_s: 0.0 };
         movements.begin_all(true);
         movements
     }
 
     pub(super) fn scaled(self, scale: f64) -> Self {
-        Self { scale, ..self }
+        Self { scales: vec![scale; self.scales.len()], ..self }
+    }
+
+    /// From here on one mover is so many times as fast as its file says.
+    pub fn set_scale(&mut self, mover: usize, scale: f64) {
+        if let Some(own) = self.scales.get_mut(mover) {
+            *own = scale;
+        }
     }
 
     /// Whether the clock alone does not say where they are.
@@ -47,7 +55,7 @@ impl Movements {
     pub fn advance(&mut self, time_s: f64, robots: impl Iterator<Item = Point2> + Clone) {
         let period_s = time_s - self.time_s;
         self.time_s = time_s;
-        for (mover, ride) in self.layout.movers.iter().zip(&mut self.rides) {
+        for ((mover, ride), scale) in self.layout.movers.iter().zip(&mut self.rides).zip(&self.scales) {
             let (Some(ride), Some((schedule, route))) = (ride, scheduled(mover, &self.layout.routes)) else { continue };
             if let Some(within_m) = schedule.starts_within_m.filter(|_| ride.waits()) {
                 let here = place(route, ride);
@@ -56,7 +64,7 @@ impl Movements {
                     ride.set_out(schedule, route);
                 }
             }
-            ride.drive(schedule, route, self.scale, period_s);
+            ride.drive(schedule, route, *scale, period_s);
         }
     }
 
@@ -84,7 +92,7 @@ impl Movements {
         let Some(mover) = self.layout.movers.get(index) else { return Pose::default() };
         match (self.rides[index], mover.way(&self.layout.routes)) {
             (Some(ride), Some(route)) => place(route, &ride),
-            _ => mover.pose_at(&self.layout.routes, self.clock_s()),
+            _ => mover.pose_at(&self.layout.routes, self.clock_s(index)),
         }
     }
 
@@ -99,13 +107,13 @@ impl Movements {
         let route = mover.way(&self.layout.routes)?;
         match self.rides.first()? {
             Some(ride) => Some((route, ride.along_m, ride.back)),
-            None => Some((route, mover.along_m(route, self.clock_s()), false)),
+            None => Some((route, mover.along_m(route, self.clock_s(0)), false)),
         }
     }
 
-    /// The time by which movers go that know nothing but their speed.
-    fn clock_s(&self) -> f64 {
-        self.time_s * self.scale
+    /// The time by which a mover goes that knows nothing but its speed.
+    fn clock_s(&self, mover: usize) -> f64 {
+        self.time_s * self.scales[mover]
     }
 }
 

@@ -162,6 +162,19 @@ impl Scene {
         Self { hierarchy: Bvh::from_leaves(BvhBuildStrategy::Binned, &leaves), parts }
     }
 
+    /// This scene with some of its materials so many grey levels lighter; negative ones are darker.
+    #[must_use]
+    pub(crate) fn lightened(&self, materials: impl Iterator<Item = (usize, f64)>) -> Self {
+        let mut scene = self.clone();
+        for (index, levels) in materials {
+            if let Some(material) = scene.parts.materials.get_mut(index) {
+                material.colour =
+                    material.colour.map(|level| (f64::from(level) + levels).round().clamp(0.0, 255.0) as u8);
+            }
+        }
+        scene
+    }
+
     /// The solids, materials, floor and light.
     #[must_use]
     pub fn parts(&self) -> &SceneParts {

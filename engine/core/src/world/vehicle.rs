@@ -8,7 +8,7 @@ use super::stance::Stance;
 use super::terrain::Terrain;
 use super::traffic::Traffic;
 use crate::geometry::{Point3, Pose, Twist, Vector3};
-use crate::settings::{BodyShape, Footprint};
+use crate::settings::{BodyShape, Footprint, RobotSettings};
 
 /// A body and its drive.
 #[derive(Debug, Clone)]
@@ -81,6 +81,11 @@ impl Vehicle {
             others: Vec::with_capacity(others),
             struck: Vec::with_capacity(others),
         }
+    }
+
+    /// Drives on as other settings say, with the same random numbers.
+    pub(super) fn change_drive(&mut self, robot: &RobotSettings, period_s: f64) {
+        self.drive.change(robot, period_s);
     }
 
     pub(super) fn shape(&self) -> &BodyShape {

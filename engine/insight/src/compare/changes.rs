@@ -60,7 +60,8 @@ fn settings(first: &Plan, other: &Plan) -> Vec<SettingChange> {
     };
     let rows = SETTINGS.iter().map(|row| (row.name(), word((row.get)(a)), word((row.get)(b))));
     let further = [
-        ("world".to_owned(), first.layout.name.clone(), other.layout.name.clone()),
+        ("world".to_owned(), first.worlds.title(), other.worlds.title()),
+        ("randomise".to_owned(), drawn(a), drawn(b)),
         ("actions".to_owned(), actions(a), actions(b)),
         ("filters".to_owned(), filters(a), filters(b)),
     ];
@@ -79,12 +80,19 @@ fn settings(first: &Plan, other: &Plan) -> Vec<SettingChange> {
         .filter(|(_, before, after)| before != after)
         .map(|(name, before, after)| SettingChange { name, before, after })
         .collect();
-    let texts = [first, other].map(|plan| &plan.layout.source.text);
-    if texts[0] != texts[1] && first.layout.name == other.layout.name {
+    let texts = [first, other].map(|plan| plan.worlds.layouts().iter().map(|layout| &layout.source.text));
+    if first.worlds.title() == other.worlds.title() && !Iterator::eq(texts[0].clone(), texts[1].clone()) {
         let (before, after) = ("as it was".to_owned(), "another text".to_owned());
         changes.push(SettingChange { name: "world file".to_owned(), before, after });
     }
     changes
+}
+
+/// What is drawn for each attempt.
+fn drawn(settings: &Settings) -> String {
+    let entries: Vec<String> =
+        settings.randomise.iter().map(|varied| format!("{} {}", varied.key, varied.from.words())).collect();
+    if entries.is_empty() { "nothing".to_owned() } else { entries.join(", ") }
 }
 
 fn actions(settings: &Settings) -> String {

@@ -20,14 +20,14 @@ pub(super) fn draw_curve(folder: &Path, plan: &Plan, results: &[SeedResult]) -> 
         [result] => (result.run.summary.learned_at, format!("seed {}", result.run.summary.seed)),
         _ => (Spread::new(results.iter().map(summary).collect()).median.learned_at, format!("{} seeds", results.len())),
     };
-    let title = format!("{} in {}, {seeds}", plan.behaviour.name(), plan.layout.name);
+    let title = format!("{} in {}, {seeds}", plan.behaviour.name(), plan.worlds.title());
     learning_curve(&CurveData { title: &title, window_steps: WINDOW_STEPS, curves: &curves, learned_at })?
         .write(folder, "learning-curve")
 }
 
 pub(super) fn draw_seed(folder: &Path, plan: &Plan, result: &SeedResult) -> Result<()> {
     let seed = result.run.summary.seed;
-    let title = format!("{} in {}, seed {seed}", plan.behaviour.name(), plan.layout.name);
+    let title = format!("{} in {}, seed {seed}", plan.behaviour.name(), plan.worlds.title());
     let tested = ("test: first 800 steps", &result.run.tested.trail);
     match &result.run.learned {
         Some(learned) => {
@@ -51,7 +51,7 @@ pub(super) fn draw_paths(folder: &Path, plan: &Plan, results: &[SeedResult]) -> 
     let title = format!(
         "{} in {}, {} seeds: first 800 steps of the test",
         plan.behaviour.name(),
-        plan.layout.name,
+        plan.worlds.title(),
         results.len()
     );
     let strong = (median, results[median].run.summary.seed);
@@ -59,7 +59,7 @@ pub(super) fn draw_paths(folder: &Path, plan: &Plan, results: &[SeedResult]) -> 
 }
 
 pub(super) fn draw_frame(folder: &Path, plan: &Plan, tested: &TestRun) -> Result<()> {
-    let title = format!("{} in {}: what the robot sees", plan.behaviour.name(), plan.layout.name);
+    let title = format!("{} in {}: what the robot sees", plan.behaviour.name(), plan.worlds.title());
     snapshot_frame(&title, &tested.snapshot)?.write(folder, "frame")
 }
 

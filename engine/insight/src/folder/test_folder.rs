@@ -42,10 +42,10 @@ impl TestFolder {
     /// If a file cannot be written.
     pub fn write(&self, plan: &Plan, tested: &TestRun, map: Option<&CertaintyGrid>) -> Result<()> {
         write_json(&self.path.join(TEST_FILE), &tested.figures)?;
-        let title = format!("{} in {}: test of the frozen policy", plan.behaviour.name(), plan.layout.name);
+        let title = format!("{} in {}: test of the frozen policy", plan.behaviour.name(), plan.worlds.title());
         draw_trails(&self.path, plan, &title, &[("first 800 steps", &tested.trail)])?;
         if let Some(map) = map {
-            let title = format!("{} in {}: what the laser found", plan.behaviour.name(), plan.layout.name);
+            let title = format!("{} in {}: what the laser found", plan.behaviour.name(), plan.worlds.title());
             let (columns, cell_m, origin_m) = (map.columns(), map.cell_m(), map.origin_m());
             certainty_grid(&title, &map.greys(), columns, cell_m, origin_m, &tested.trail)?
                 .write(&self.path, "certainty-grid")?;

@@ -78,7 +78,10 @@ fn idle(plan: &Plan, name: &str) -> Option<(String, &'static str)> {
             format!("recovery is to \"{}\"", settings.recovery.to.word()),
             "write recovery(\"behind\", ...), or take it out",
         ),
-        ("movers", _) if plan.layout.movers.is_empty() => {
+        ("run", "stay_steps") if !plan.varies() => {
+            ("there is one world, and nothing is drawn".to_owned(), "take it out, or add worlds or randomise")
+        }
+        ("movers", _) if plan.worlds.layouts().iter().all(|layout| layout.movers.is_empty()) => {
             (format!("nothing drives by itself in world '{}'", plan.layout.name), "take it out, or use another world")
         }
         ("combine", "margin") if settings.combine.way == CombineWay::Sum => {

@@ -40,6 +40,9 @@ pub struct Document {
     pub script: String,
     /// What stands in the world, from above.
     pub world: Ground,
+    /// What stands in the other worlds of the run.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub further_worlds: Vec<Ground>,
     /// Length of one unit of a track's coordinates, metres.
     pub unit_m: f64,
     /// Half of the robot's length and width, metres.
@@ -188,7 +191,10 @@ impl Document {
     pub fn without_seeds(plan: &Plan) -> Result<Self> {
         let Settings { run, robot, laser, .. } = &plan.settings;
         let world = Ground::new(plan);
-        let far = world.bounds_m.iter().fold(1.0, |far: f64, at| far.max(at.abs()));
+        let further_worlds: Vec<Ground> =
+            (1..plan.worlds.layouts().len()).map(|world| Ground::new(&plan.in_world(world))).collect();
+        let bounds_m = further_worlds.iter().chain([&world]).flat_map(|world| world.bounds_m);
+        let far = bounds_m.fold(1.0, |far: f64, at| far.max(at.abs()));
         let fan = laser.fan();
         let every = fan.beams.saturating_sub(1).div_ceil(MOST_SCAN_BEAMS - 1).max(1);
         let (rows, columns) = plan.drawn_grid()?;
@@ -202,6 +208,7 @@ impl Document {
             // Room for a robot that falls off the edge of the world.
             unit_m: (2.0 * far / REACH).max(0.001),
             world,
+            further_worlds,
             robot_half_m: robot.body.footprint.half_m(),
             robot_outline_m: robot.body.footprint.outline_m(),
             period_s: run.period_s,

@@ -10,7 +10,8 @@
 //! | `state`, `next_state` | u32 | as the grid numbers them |
 //! | `action` | u8 | index into `actions` |
 //! | `driver` | u8 | 0 the script's own choice, else 1 and the index into `uses`; empty for a script without uses |
-//! | `flags` | u8 | 1 recover, 2 contact, 4 fallen, 8 explored |
+//! | `flags` | u8 | 1 recover, 2 contact, 4 fallen, 8 explored, 16 broken off after its longest stay |
+//! | `world` | u16 | 0 is `world`, the others are `further_worlds`; absent in one world |
 //! | `reward` | f32 | sum of what the rules added |
 //! | `fired` | bits | rule `r` is bit `r % 8` of byte `r / 8`; `ceil(rules / 8)` bytes a step |
 //! | `beam`, `nearest_beam` | u16 | beam behind the last rule that fired (65535 none); beam with the least range |

@@ -62,6 +62,8 @@ pub struct Track {
     #[serde(skip_serializing_if = "String::is_empty")]
     pub driver: String,
     pub flags: String,
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub world: String,
     pub reward: String,
     pub fired: String,
     pub beam: String,
@@ -91,6 +93,7 @@ struct Columns {
     action: Vec<u8>,
     driver: Vec<u8>,
     flags: Vec<u8>,
+    world: Vec<u8>,
     reward: Vec<u8>,
     fired: Vec<u8>,
     beam: Vec<u8>,
@@ -178,8 +181,13 @@ impl Columns {
         if source.plan.behaviour.hands_over() {
             self.driver.push(record.driver.map_or(0, |driver| driver + 1));
         }
-        let flags = [record.then.is_some(), record.contact, record.fallen, record.explored];
+        let attempt = source.ledger.attempt(step);
+        let hop = attempt.as_ref().is_some_and(|attempt| attempt.hop);
+        let flags = [record.then.is_some(), record.contact, record.fallen, record.explored, hop];
         self.flags.push(flags.iter().enumerate().fold(0, |set, (bit, flag)| set | u8::from(*flag) << bit));
+        if let Some(attempt) = attempt.filter(|_| !source.plan.worlds.further().is_empty()) {
+            self.world.extend((attempt.world as u16).to_le_bytes());
+        }
         self.reward.extend((record.reward as f32).to_le_bytes());
         let from = self.fired.len();
         self.fired.resize(from + source.plan.behaviour.rules().len().div_ceil(8), 0);
@@ -215,6 +223,7 @@ impl Columns {
             action: base64(&self.action),
             driver: base64(&self.driver),
             flags: base64(&self.flags),
+            world: base64(&self.world),
             reward: base64(&self.reward),
             fired: base64(&self.fired),
             beam: base64(&self.beam),
@@ -236,7 +245,8 @@ impl Track {
     pub(super) fn bytes(&self) -> usize {
         let columns =
             [&self.x, &self.y, &self.yaw, &self.state, &self.next_state, &self.action, &self.driver, &self.flags];
-        let others = [&self.reward, &self.fired, &self.beam, &self.nearest_beam, &self.nearest, &self.scan];
+        let others =
+            [&self.world, &self.reward, &self.fired, &self.beam, &self.nearest_beam, &self.nearest, &self.scan];
         let movers = self.movers.iter().flat_map(|mover| [&mover.x, &mover.y, &mover.yaw]);
         columns.into_iter().chain(others).chain(movers).map(String::len).sum()
     }

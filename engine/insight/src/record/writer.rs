@@ -100,6 +100,7 @@ impl Tape {
         let mut playback = Playback::new(plan, seed, phase, ledger)?;
         let (at, timestamp) = self.now();
         self.world.log_with_meta(&update(plan.layout.scene.parts(), timestamp), at);
+        let mut world = 0;
         let laser = &plan.settings.laser;
         self.transform.log_with_meta(
             &FrameTransform {
@@ -113,6 +114,11 @@ impl Tape {
         );
         while let Some(step) = playback.advance()? {
             self.step += 1;
+            let now = playback.cycle().robot().world_index();
+            if std::mem::replace(&mut world, now) != now {
+                let (at, timestamp) = self.now();
+                self.world.log_with_meta(&update(plan.worlds.layouts()[now].scene.parts(), timestamp), at);
+            }
             self.robot(&playback);
             self.scan(plan, &playback);
             self.judged(plan, phase, &playback, &step)?;

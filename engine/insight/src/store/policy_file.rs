@@ -13,6 +13,7 @@ use engine::geometry::Twist;
 use engine::learner::{Policy, PolicyRow};
 use engine::settings::{FilterSettings, GridSettings, Settings, ViewSettings};
 use engine::state::{GridMap, MAX_STATES, StateMap};
+use engine::world::FamilyRange;
 
 /// The name of the file in a run's folder.
 pub const POLICY_FILE: &str = "policy.toml";
@@ -44,6 +45,11 @@ struct PolicyFile {
     fill: Option<bool>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     remember_s: Option<f64>,
+    /// What it was learned in: several worlds by their names, and what was drawn for each attempt.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    worlds: Vec<String>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    randomise: Vec<String>,
     states: usize,
     /// Forward speed in m/s and turning speed in rad/s.
     actions: Vec<[f64; 2]>,
@@ -131,6 +137,8 @@ fn text_of(
         occupied: grid.as_ref().map(|grid| grid.occupied),
         fill: grid.as_ref().map(|grid| grid.fill),
         remember_s: grid.as_ref().map(|grid| grid.remember_s).filter(|seconds| *seconds > 0.0),
+        worlds: worlds_of(settings),
+        randomise: settings.randomise.iter().map(|varied| format!("{}: {}", varied.key, varied.from.words())).collect(),
         states: policy.rows().len(),
         actions: settings.actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
         filter,
@@ -139,6 +147,14 @@ fn text_of(
     };
     toml::to_string(&file)
         .map_err(|error| Box::new(Diagnostic::new("E-POLICY-FILE", format!("the policy cannot be written: {error}"))))
+}
+
+/// Of several worlds each with its weight: `room: 3`.
+fn worlds_of(settings: &Settings) -> Vec<String> {
+    let shares = settings.worlds.iter().map(|share| format!("{}: {}", share.name, share.weight));
+    // Worlds made by rule may be several under one name.
+    let range = settings.worlds.is_empty() && FamilyRange::count_of(&settings.world) > 1;
+    shares.chain(range.then(|| settings.world.clone())).collect()
 }
 
 impl StoredPolicy {

@@ -19,13 +19,15 @@ use engine::geometry::Twist;
 use engine::learner::Carry;
 use engine::script::{Behaviour, ParamValues};
 use engine::settings::{Edition, SETTINGS, Settings, Value, ViewSettings, apply};
-use engine::world::Layout;
+use engine::world::{Layout, WorldSet};
 
 const FORMAT: u32 = 1;
 /// The format of a run whose reward was swapped while it learned.
 const FORMAT_OF_LEGS: u32 = 2;
 /// The format of a run with more views than one.
 const FORMAT_OF_VIEWS: u32 = 3;
+/// The format of a run in more worlds than one.
+const FORMAT_OF_WORLDS: u32 = 4;
 /// As many as `run.steps` may be.
 const MOST_LEG_STEPS: u64 = 1_000_000_000;
 
@@ -50,6 +52,12 @@ struct RunFile {
     params: ParamValues,
     script: TextEntry,
     world: TextEntry,
+    /// Of several worlds: those after the home world, in the order in which they are drawn.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    further_world: Vec<TextEntry>,
+    /// The shares of several worlds: weight, and how many worlds have it together.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    world_share: Vec<(u32, usize)>,
     /// The body that the script names.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     body: Option<TextEntry>,
@@ -135,12 +143,12 @@ pub fn run_to_toml(plan: &Plan, seed: u64) -> Result<String> {
     let legs = plan.earlier.iter().map(|leg| LegEntry {
         steps: leg.steps,
         table: leg.then,
-        settings: settings_table(&leg.plan.settings),
+        settings: settings_table(&leg.plan),
         params: leg.plan.behaviour.param_values(),
         script: TextEntry::new(leg.plan.behaviour.source()),
     });
     let file = RunFile {
-        format: format(!plan.earlier.is_empty(), !settings.further_views.is_empty()),
+        format: format(!plan.earlier.is_empty(), !settings.further_views.is_empty(), !plan.worlds.further().is_empty()),
         engine: env!("CARGO_PKG_VERSION").to_owned(),
         behaviour: plan.behaviour.name().to_owned(),
         edition: plan.behaviour.edition().number(),
@@ -148,10 +156,12 @@ pub fn run_to_toml(plan: &Plan, seed: u64) -> Result<String> {
         actions: settings.actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
         filters: settings.view.filters.iter().map(|filter| FilterEntry::new(filter, &plan.filters)).collect(),
         view: settings.further_views.iter().map(|view| ViewEntry::new(view, &plan.filters)).collect(),
-        settings: settings_table(settings),
+        settings: settings_table(plan),
         params: plan.behaviour.param_values(),
         script: TextEntry::new(plan.behaviour.source()),
         world: TextEntry::new(&plan.layout.source),
+        further_world: plan.worlds.further().iter().map(|layout| TextEntry::new(&layout.source)).collect(),
+        world_share: if plan.worlds.further().is_empty() { Vec::new() } else { plan.worlds.shares() },
         body: plan.behaviour.body().map(TextEntry::new),
         policy: plan.members.iter().map(|member| TextEntry::new(&member.source)).collect(),
         used: plan.used.iter().map(|used| UsedEntry::new(&used.texts)).collect(),
@@ -161,17 +171,20 @@ pub fn run_to_toml(plan: &Plan, seed: u64) -> Result<String> {
         .map_err(|error| Box::new(Diagnostic::new("E-RUN-FILE", format!("the settings cannot be written: {error}"))))
 }
 
-fn format(legs: bool, views: bool) -> u32 {
-    match (views, legs) {
-        (true, _) => FORMAT_OF_VIEWS,
-        (false, true) => FORMAT_OF_LEGS,
-        (false, false) => FORMAT,
+fn format(legs: bool, views: bool, worlds: bool) -> u32 {
+    match (worlds, views, legs) {
+        (true, ..) => FORMAT_OF_WORLDS,
+        (false, true, _) => FORMAT_OF_VIEWS,
+        (false, false, true) => FORMAT_OF_LEGS,
+        (false, false, false) => FORMAT,
     }
 }
 
-fn settings_table(settings: &Settings) -> Table {
+fn settings_table(plan: &Plan) -> Table {
+    let (settings, varies) = (&plan.settings, plan.varies());
     let mut table = Table::new();
-    for row in SETTINGS {
+    // How long an attempt may stay says nothing where it may stay for ever.
+    for row in SETTINGS.iter().filter(|row| varies || row.key != "stay_steps") {
         let group = table.entry(row.group).or_insert_with(|| toml::Value::Table(Table::new()));
         let value = match (row.get)(settings) {
             Value::Flag(flag) => toml::Value::Boolean(flag),
@@ -228,14 +241,15 @@ impl StoredRun {
         filters: Arc<Catalogue>,
     ) -> Result<Self> {
         let file: RunFile = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
-        let expected = format(!file.leg.is_empty(), !file.view.is_empty());
+        let expected = format(!file.leg.is_empty(), !file.view.is_empty(), !file.further_world.is_empty());
         if file.format != expected {
             let message = format!(
-                "'{}' has format {}; this engine reads format {expected} with {} earlier legs and {} further views",
+                "'{}' has format {}; this engine reads format {expected} with {} earlier legs, {} further views and {} further worlds",
                 source.path.display(),
                 file.format,
                 file.leg.len(),
-                file.view.len()
+                file.view.len(),
+                file.further_world.len()
             );
             return Diagnostic::new("E-RUN-FILE", message).fail();
         }
@@ -251,12 +265,12 @@ impl StoredRun {
             Behaviour::parse_in(edition, &file.behaviour, script.check(source)?, &bodies, params).map(Arc::new)
         };
         let behaviour = behaviour_of(&file.script, &file.params)?;
-        let layout = Arc::new(Layout::parse(file.world.check(source)?, &behaviour.settings().robot.body)?);
+        let worlds = stored_worlds(source, &file, behaviour.settings())?;
         let further = file.view.iter().flat_map(|view| &view.filter);
         file.filters.iter().chain(further).try_for_each(|filter| filter.check(&filters))?;
         let plan_of = |behaviour: Arc<Behaviour>, table: &Table| {
             let settings = settings(source, behaviour.settings(), &file, table)?;
-            Plan::with_layout(behaviour, settings, Arc::clone(&layout), Arc::clone(&filters))
+            Plan::with_worlds(behaviour, settings, worlds.clone(), Arc::clone(&filters))
         };
         let plan = plan_of(behaviour, &file.settings)?;
         let leg = |leg: &LegEntry| {
@@ -292,6 +306,20 @@ pub(super) fn uses_policies(source: &SourceText) -> bool {
     toml::from_str(&source.text).is_ok_and(|Uses { used }| !used.is_empty())
 }
 
+/// The worlds of a run.
+fn stored_worlds(source: &SourceText, file: &RunFile, settings: &Settings) -> Result<WorldSet> {
+    let mut all = Vec::with_capacity(1 + file.further_world.len());
+    for entry in std::iter::once(&file.world).chain(&file.further_world) {
+        all.push(Arc::new(Layout::parse(entry.check(source)?, &settings.robot.body)?));
+    }
+    let alone = [(1, 1)];
+    let shares = if file.further_world.is_empty() { &alone[..] } else { &file.world_share };
+    WorldSet::stored(shares, all).ok_or_else(|| {
+        let message = format!("the worlds of '{}' are not those that it shares out", source.path.display());
+        Box::new(Diagnostic::new("E-RUN-FILE", message).help("run the behaviour again"))
+    })
+}
+
 fn not_one_run(source: &SourceText, what: &str) -> Diagnostic {
     let message = format!("the legs of '{}' differ in {what}: only the reward may change", source.path.display());
     Diagnostic::new("E-RUN-FILE", message).help("run the behaviour again")
@@ -299,6 +327,10 @@ fn not_one_run(source: &SourceText, what: &str) -> Diagnostic {
 
 fn settings(source: &SourceText, written: &Settings, file: &RunFile, table: &Table) -> Result<Settings> {
     let mut settings = written.clone();
+    if file.further_world.is_empty() {
+        // Another world was named than the script does.
+        settings.worlds.clear();
+    }
     settings.actions = file.actions.iter().map(|[linear, angular]| Twist::new(*linear, *angular)).collect();
     settings.view.filters = file.filters.iter().map(FilterEntry::settings).collect();
     let names = |views: &[ViewSettings]| views.iter().map(|view| view.name.clone()).collect::<Vec<_>>();

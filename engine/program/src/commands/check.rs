@@ -14,8 +14,7 @@ use crate::cli::{CheckArguments, CheckFormat};
 use crate::console::{Console, ConsoleError};
 
 pub(crate) fn run(arguments: &CheckArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
-    let overrides =
-        Overrides { world: arguments.world.clone(), steps: None, test_steps: None, set: arguments.set.clone() };
+    let overrides = Overrides { world: arguments.world.clone(), set: arguments.set.clone(), ..Overrides::default() };
     let format = arguments.format();
     let checked = open_to_look(&arguments.behaviour, &overrides, &arguments.filters, false).and_then(|runnable| {
         // A pack's filters stand in a folder that lives as long as it does.

@@ -73,7 +73,7 @@ pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::r
     draw_step(plan, &playback, &format!("step {step} of {name}: what the robot saw at its end"))?
         .write(out, &stems[1])?;
     let pictures = stems.map(|stem| out.join(format!("{stem}.png")).display().to_string());
-    let (behaviour, world) = (plan.behaviour.name().to_owned(), plan.layout.name.clone());
+    let (behaviour, world) = (plan.behaviour.name().to_owned(), plan.worlds.title());
     let report = StepReport { behaviour, world, seed: *seed, phase: name, reasons, pictures };
     console.json(&report)?;
     print(console, playback.plan(), &report)?;
@@ -125,6 +125,12 @@ fn print(console: &mut Console, plan: &Plan, report: &StepReport) -> std::result
         reasons.step,
         short(reasons.time_s)
     ))?;
+    if let Some(world) = &reasons.world_name {
+        console.line(&format!("world:     {}", printable(world)))?;
+    }
+    for (key, value) in &reasons.drawn {
+        console.line(&format!("drawn:     {} = {value}", printable(key)))?;
+    }
     for param in plan.behaviour.params() {
         console.line(&format!("parameter: {} = {}", printable(&param.name), param.shown()))?;
     }
@@ -163,7 +169,11 @@ fn print(console: &mut Console, plan: &Plan, report: &StepReport) -> std::result
         console.line(&format!("prey:      x {x_m:.2} m, y {y_m:.2} m"))?;
     }
     let to = reasons.to.as_ref().map_or(String::new(), |to| format!(" to \"{}\"", printable(to)));
-    let after = if reasons.recover { format!(", then recovery{to}") } else { String::new() };
+    let after = match (reasons.recover, reasons.hop) {
+        (true, _) => format!(", then recovery{to}"),
+        (false, true) => ", then a hop: the attempt is broken off here, which is no outcome".to_owned(),
+        (false, false) => String::new(),
+    };
     console.line(&format!("reward:    {}{after}", short(reasons.reward)))?;
     for rule in reasons.rules.iter().filter(|rule| rule.added.is_some()) {
         console.line("")?;

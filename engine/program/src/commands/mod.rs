@@ -23,3 +23,4 @@ pub(crate) mod upgrade;
 mod verify;
 pub(crate) mod watch;
 mod words;
+pub(crate) mod world;

@@ -3,6 +3,7 @@
 use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::experiment::{Ledger, Phase, Plan, Playback, Record, RuleScore};
 use engine::learner::Carry;
+use engine::outcome::Ending;
 use insight::store::{RecordedRun, StoredRun};
 use insight::words::short;
 use serde::Serialize;
@@ -29,7 +30,20 @@ struct ReplayReport {
     /// Where the reward was swapped while the robot learned.
     swaps: Vec<SwapEntry>,
     rules: Vec<RuleScoreEntry>,
+    /// Of a run in several worlds, or with values that are drawn: its attempts, in their order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    attempts: Vec<AttemptEntry>,
     listed: Vec<StepEntry>,
+}
+
+/// One attempt, from the step with which it began.
+#[derive(Serialize)]
+struct AttemptEntry {
+    step: usize,
+    world: String,
+    drawn: Vec<(String, String)>,
+    /// How it ended: `failure`, `goal`, `restart` or `hop`; null of the last one.
+    ending: Option<&'static str>,
 }
 
 #[derive(Serialize)]
@@ -84,13 +98,14 @@ pub(crate) fn run(arguments: &ReplayArguments, console: &mut Console) -> std::re
     play(plan, *seed, phase, ledger, name)?;
     let report = ReplayReport {
         behaviour: plan.behaviour.name().to_owned(),
-        world: plan.layout.name.clone(),
+        world: plan.worlds.title(),
         seed: *seed,
         phase: name,
         steps: ledger.steps(),
         kept: ledger.len(),
         swaps: swaps(plan, phase),
         rules: rules(plan, phase, ledger),
+        attempts: attempts(plan, ledger),
         listed: listed.filter_map(|step| entry(plan_of(plan, phase, step), ledger, step)).collect(),
     };
     console.json(&report)?;
@@ -122,6 +137,26 @@ fn play(plan: &Plan, seed: u64, phase: Phase, ledger: &Ledger, name: &str) -> Re
 fn swaps(plan: &Plan, phase: Phase) -> Vec<SwapEntry> {
     let swaps = plan.swaps().filter(|_| phase == Phase::Learning);
     swaps.map(|(step, table, ..)| SwapEntry { step, table }).collect()
+}
+
+/// What was drawn for each attempt, and how it ended.
+fn attempts(plan: &Plan, ledger: &Ledger) -> Vec<AttemptEntry> {
+    let (mut attempts, mut begins) = (Vec::<AttemptEntry>::new(), true);
+    for step in 0..ledger.len() {
+        let (Some(attempt), Some(record)) = (ledger.attempt(step), ledger.record(step)) else { break };
+        if std::mem::take(&mut begins) {
+            let drawn = plan.settings.randomise.iter().zip(&attempt.drawn);
+            let drawn = drawn.map(|(varied, drawn)| (varied.key.clone(), varied.shown(*drawn))).collect();
+            let world = plan.worlds.layouts().get(attempt.world).map_or_else(String::new, |layout| layout.name.clone());
+            attempts.push(AttemptEntry { step, world, drawn, ending: None });
+        }
+        let ending = record.ending().map(Ending::word).or(attempt.hop.then_some("hop"));
+        begins = ending.is_some();
+        if let Some(last) = attempts.last_mut() {
+            last.ending = ending;
+        }
+    }
+    attempts
 }
 
 /// The plan under which a step was done.
@@ -194,6 +229,7 @@ fn print(console: &mut Console, report: &ReplayReport) -> std::result::Result<()
             step(*last_step)
         ))?;
     }
+    print_attempts(console, &report.attempts)?;
     if report.listed.is_empty() {
         return console
             .line("steps:     list them with --from N --to N; the reasons of one: engine explain RUN --step N");
@@ -211,6 +247,20 @@ fn print(console: &mut Console, report: &ReplayReport) -> std::result::Result<()
         ))?;
     }
     Ok(())
+}
+
+/// The first attempts, each with its world and what was drawn.
+fn print_attempts(console: &mut Console, attempts: &[AttemptEntry]) -> std::result::Result<(), ConsoleError> {
+    for AttemptEntry { step, world, drawn, ending } in attempts.iter().take(LISTED) {
+        let drawn: Vec<String> = drawn.iter().map(|(key, value)| format!("{} {value}", printable(key))).collect();
+        let drawn = if drawn.is_empty() { String::new() } else { format!(", {}", drawn.join(", ")) };
+        let ending = ending.map_or(String::new(), |ending| format!(": {ending}"));
+        console.line(&format!("attempt:   from step {step} in {}{drawn}{ending}", printable(world)))?;
+    }
+    match attempts.len().saturating_sub(LISTED) {
+        0 => Ok(()),
+        more => console.line(&format!("           ... and {more} more, with --json")),
+    }
 }
 
 fn because(step: &StepEntry) -> String {

@@ -102,7 +102,7 @@ pub(crate) fn run(arguments: &RescoreArguments, console: &mut Console) -> std::r
     let report = RescoreReport {
         behaviour: plan.behaviour.name().to_owned(),
         script: new.behaviour.source().path.display().to_string(),
-        world: plan.layout.name.clone(),
+        world: plan.worlds.title(),
         seed,
         steps: log.learning.len(),
         steps_done: log.learning.steps(),

@@ -20,7 +20,7 @@ use crate::console::{Console, ConsoleError};
 
 pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
     let (world, set) = (arguments.world.clone(), arguments.set.clone());
-    let overrides = Overrides { world, steps: arguments.steps, test_steps: None, set };
+    let overrides = Overrides { world, steps: arguments.steps, set, ..Overrides::default() };
     let Runnable { plan, unpacked: _unpacked } =
         super::behaviour::open(&arguments.behaviour, &overrides, &arguments.filters, arguments.allow_unsigned)?;
     let seeds = seeds(arguments)?;

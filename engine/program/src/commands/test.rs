@@ -32,8 +32,14 @@ struct TestReport<'a> {
 }
 
 pub(crate) fn run(arguments: &TestArguments, console: &mut Console) -> Result<u8, ConsoleError> {
-    let (world, set) = (arguments.world.clone(), arguments.set.clone());
-    let overrides = Overrides { world, steps: None, test_steps: arguments.steps, set };
+    let overrides = Overrides {
+        world: arguments.world.clone(),
+        worlds: arguments.worlds.clone(),
+        plain: arguments.plain,
+        test_steps: arguments.steps,
+        set: arguments.set.clone(),
+        ..Overrides::default()
+    };
     let StoredRun { plan, seed, decider } = match super::behaviour::open_pack(&arguments.run, arguments.allow_unsigned)?
     {
         Some((pack, depends)) => of_pack(&pack, &depends, &overrides, sources(&arguments.filters)?)?,
@@ -61,7 +67,11 @@ pub(crate) fn run(arguments: &TestArguments, console: &mut Console) -> Result<u8
         true => "driven by learned policies",
         false => "combined",
     };
-    console.line(&format!("behaviour: {} in {}, {how} with seed {seed}", plan.behaviour.name(), plan.layout.name))?;
+    console.line(&format!(
+        "behaviour: {} in {}, {how} with seed {seed}",
+        plan.behaviour.name(),
+        plan.worlds.title()
+    ))?;
     if let Some(combination) = &tested.combination {
         print_combination(console, &combination.figures)?;
     }

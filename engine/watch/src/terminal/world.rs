@@ -12,7 +12,7 @@ use super::ink::TerminalInk;
 use super::lines::{heading, nothing};
 use super::view::View;
 use engine::experiment::{Record, RecordedMovers};
-use insight::page::{Document, SolidOutline};
+use insight::page::{Document, Ground, SolidOutline};
 use insight::words::typeset;
 
 /// Steps of the way that are drawn.
@@ -56,31 +56,43 @@ impl Map {
 
 pub(super) fn draw_world(view: &View, area: Rect, buffer: &mut Buffer) {
     let Some(document) = view.document() else { return };
+    let ground = ground(view, document);
     let mut dots = Dots::new(area.width, area.height.saturating_sub(1));
-    let map = Map::new(document.world.bounds_m, dots.size());
+    let map = Map::new(ground.bounds_m, dots.size());
     let inner = heading("World", vec![Span::styled(scale_bar(&map), TerminalInk::quiet())], area, buffer);
     if inner.height < 3 {
         nothing("no room for the world", inner, buffer);
         return;
     }
-    if let Some(route) = &document.world.route_m {
+    if let Some(route) = &ground.route_m {
         let places: Vec<Dot> = route.iter().map(|place| map.at((place[0], place[1]))).collect();
         dots.path(&places, Some(1), Rank::Ground, TerminalInk::quiet());
     }
-    for solid in &document.world.solids {
+    for solid in &ground.solids {
         stand(&map, solid, &mut dots);
     }
     let record = view.record();
     if let Some(record) = &record {
         laser(view, document, &map, record, &mut dots);
         trail(view, &map, &mut dots);
-        movers(view, document, &map, &mut dots);
+        movers(view, ground, &map, &mut dots);
     }
     dots.draw(inner, buffer, view.ink.fine);
     marks(view, document, &map, inner, buffer);
     if let Some(record) = &record {
         robot(view, document, &map, record, inner, buffer);
     }
+}
+
+/// The number of the world in which a step was done.
+fn world_of(view: &View, step: usize) -> usize {
+    view.ledger().map_or(0, |ledger| ledger.world(step))
+}
+
+/// The world in which the robot is.
+fn ground<'a>(view: &View, document: &'a Document) -> &'a Ground {
+    let further = world_of(view, view.step).checked_sub(1);
+    further.and_then(|index| document.further_worlds.get(index)).unwrap_or(&document.world)
 }
 
 /// A length that is easy to read, as wide as it is drawn.
@@ -113,11 +125,13 @@ fn trail(view: &View, map: &Map, dots: &mut Dots) {
         // Where it was lately counts more.
         let old = view.step - step > TRAIL_STEPS / 2;
         let style = if old { view.ink.accent().patch(TerminalInk::quiet()) } else { view.ink.accent() };
-        if let Some(last) = last.filter(|last| last.then.is_none()) {
+        let attempt = ledger.attempt(step);
+        let here = attempt.as_ref().map_or(0, |attempt| attempt.world) == world_of(view, view.step);
+        if let Some(last) = last.filter(|last| last.then.is_none() && here) {
             let (from, to) = (map.at((last.pose.x_m, last.pose.y_m)), map.at((record.pose.x_m, record.pose.y_m)));
             dots.line(from, to, None, Rank::Line, style);
         }
-        last = Some(record);
+        last = Some(record).filter(|_| here && attempt.is_none_or(|attempt| !attempt.hop));
     }
 }
 
@@ -156,12 +170,12 @@ fn laser(view: &View, document: &Document, map: &Map, record: &Record, dots: &mu
 }
 
 /// Everything that drives by itself, where it is at the end of the step.
-fn movers(view: &View, document: &Document, map: &Map, dots: &mut Dots) {
+fn movers(view: &View, ground: &Ground, map: &Map, dots: &mut Dots) {
     let Some(shown) = &view.shown.run else { return };
     let (Some(seed), Some(ledger)) = (view.seed_run(), view.ledger()) else { return };
     let mut track = RecordedMovers::new(&shown.run.plan, seed.seed, view.phase);
     track.seek(ledger, view.step);
-    for (pose, drawn) in track.poses().zip(&document.world.movers) {
+    for (pose, drawn) in track.poses().zip(&ground.movers) {
         for solid in &drawn.solids {
             let corners = map.corners(solid, (pose.x_m, pose.y_m, pose.yaw_rad));
             dots.fill(&corners, 1, Rank::Line, TerminalInk::strong());
@@ -171,7 +185,8 @@ fn movers(view: &View, document: &Document, map: &Map, dots: &mut Dots) {
 }
 
 fn marks(view: &View, document: &Document, map: &Map, area: Rect, buffer: &mut Buffer) {
-    for mark in &view.story.marks {
+    let here = world_of(view, view.step);
+    for mark in view.story.marks.iter().filter(|mark| world_of(view, mark.step) == here) {
         put(map.at(mark.place_m), view.ink.mark(mark.rule), view.ink.rule(&document.rules, mark.rule), area, buffer);
     }
 }

@@ -10,8 +10,8 @@ use std::ops::ControlFlow;
 use super::{Cycle, Observer, Plan, Step};
 use crate::robot::Robot;
 
+pub use record::{Attempt, Record, RecordShape};
 use record::{FIXED_BYTES, first_field};
-pub use record::{Record, RecordShape};
 
 /// The most steps that a ledger keeps: of a longer run it holds the beginning.
 pub const MOST_STEPS: u64 = 1 << 20;
@@ -185,6 +185,11 @@ impl Ledger {
         };
         self.bytes.extend_from_slice(&record.to_bytes());
         self.add_fired(cycle.fired());
+        if self.shape.varies() {
+            let attempt = [robot.world_index() as u32, u32::from(step.hop)].map(u32::to_le_bytes);
+            self.bytes.extend_from_slice(attempt.as_flattened());
+            robot.drawn().iter().for_each(|drawn| self.bytes.extend_from_slice(&drawn.to_le_bytes()));
+        }
     }
 
     /// Forgets all records; their room is kept.
@@ -237,6 +242,18 @@ impl Ledger {
     #[must_use]
     pub fn record(&self, step: usize) -> Option<Record> {
         Some(Record::from_bytes(self.record_bytes(step)?.first_chunk()?))
+    }
+
+    /// What was drawn for the attempt of a step; nothing in a run that does not vary.
+    #[must_use]
+    pub fn attempt(&self, step: usize) -> Option<Attempt> {
+        self.leg_of(step).0.attempt(self.record_bytes(step)?)
+    }
+
+    /// The number of the world in which a step was done.
+    #[must_use]
+    pub fn world(&self, step: usize) -> usize {
+        self.attempt(step).map_or(0, |attempt| attempt.world)
     }
 
     /// Every record, first to last.

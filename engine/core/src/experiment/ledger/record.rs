@@ -76,25 +76,65 @@ pub struct Record {
 pub struct RecordShape {
     /// For each rule, and `fn reward` last, what it adds whenever it fires; nothing where each record holds its own value.
     values: Vec<Option<f64>>,
+    /// Of a run that varies: how many values are drawn for each attempt.
+    drawn: Option<usize>,
+}
+
+/// What was drawn for the attempt to which a step belongs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Attempt {
+    /// The number of the world; 0 is the home world.
+    pub world: usize,
+    /// The attempt was broken off after this step.
+    pub hop: bool,
+    /// The values of `randomise`, in its order; of words and flags, which of them it is.
+    pub drawn: Vec<f64>,
 }
 
 impl RecordShape {
     /// The shape for rules with these fixed values.
     #[must_use]
     pub(super) fn new(values: Vec<Option<f64>>) -> Self {
-        Self { values }
+        Self { values, drawn: None }
     }
 
     /// The shape for a behaviour.
     #[must_use]
     pub fn of(plan: &Plan) -> Self {
-        Self::new((0..plan.behaviour.rules().len()).map(|rule| plan.behaviour.fixed_value(rule)).collect())
+        let values = (0..plan.behaviour.rules().len()).map(|rule| plan.behaviour.fixed_value(rule)).collect();
+        Self { drawn: plan.varies().then_some(plan.settings.randomise.len()), ..Self::new(values) }
     }
 
-    /// Bytes of one record: 72, 8 for each 64 rules, 8 for each value that is not fixed.
+    /// Bytes of one record: 72, 8 for each 64 rules, 8 for each value that is not fixed; of a run that varies 8 for the world,
+    /// and 8 for each value that is drawn.
     #[must_use]
     pub fn bytes(&self) -> usize {
+        self.judged_bytes() + 8 * self.drawn.map_or(0, |values| 1 + values)
+    }
+
+    /// Those of them before what was drawn.
+    fn judged_bytes(&self) -> usize {
         FIXED_BYTES + 8 * (self.words() + self.values.iter().filter(|value| value.is_none()).count())
+    }
+
+    /// Whether records hold the world and what was drawn.
+    pub(super) fn varies(&self) -> bool {
+        self.drawn.is_some()
+    }
+
+    /// The bytes of an attempt at the end of a record: the world's number and whether a hop follows as 4 bytes each, then the
+    /// drawn values.
+    pub(super) fn attempt(&self, record: &[u8]) -> Option<Attempt> {
+        self.drawn?;
+        let (words, _) = record.get(self.judged_bytes()..)?.as_chunks::<8>();
+        let (first, drawn) = words.split_first()?;
+        let [world, hop] =
+            [0, 4].map(|at| u32::from_le_bytes([first[at], first[at + 1], first[at + 2], first[at + 3]]));
+        Some(Attempt {
+            world: world as usize,
+            hop: hop == 1,
+            drawn: drawn.iter().map(|word| f64::from_le_bytes(*word)).collect(),
+        })
     }
 
     /// The fixed values.
@@ -185,6 +225,9 @@ fn destination(code: u16) -> Option<Destination> {
 pub(super) fn first_field(at: usize, shape: &RecordShape) -> &'static str {
     if (FIXED_BYTES..FIXED_BYTES + 8 * shape.words()).contains(&at) {
         return "rules that fired";
+    }
+    if at >= shape.judged_bytes() {
+        return "world and draws";
     }
     FIELDS.iter().rev().find(|(from, _)| *from <= at).map_or("size", |(_, name)| name)
 }

@@ -4,7 +4,7 @@ const SPEEDS = [1, 2, 5, 10, 25, 50, 100, 250, 1000];
 
 const app = {
   doc: null, before: null, save: 0, seed: 0, phase: 'test', step: 0, share: 1, speed: 3, playing: false,
-  litRule: null, live: null, shot: null, tracks: new Map(), picked: false,
+  litRule: null, live: null, shot: null, tracks: new Map(), picked: false, world: null,
 };
 const stale = { base: true, moment: true, motion: true, lit: true };
 const map = new WorldMap($('map'));
@@ -33,8 +33,9 @@ function showDocument(doc, before) {
   app.litRule = null;
   chooseRuleInks(doc.rules);
   document.querySelector('main').hidden = false;
-  $('title').textContent = `${doc.behaviour} in ${doc.world.name}`;
-  document.title = `${doc.behaviour} in ${doc.world.name}`;
+  const more = worldsOf(doc).length - 1;
+  document.title = `${doc.behaviour} in ${doc.world.name}${more ? ` and ${more} more` : ''}`;
+  $('title').textContent = document.title;
   const kept = app.picked ? doc.seeds.findIndex((seed) => seed.seed === wasSeed) : -1;
   app.seed = Math.max(0, kept >= 0 ? kept : doc.seeds.findIndex((seed) => seed.shown_first));
   $('seed').replaceChildren(...doc.seeds.map((seed, index) => el('option', {
@@ -44,12 +45,29 @@ function showDocument(doc, before) {
   seeds.draw(doc, app.live !== null);
   script.draw(doc);
   checkedNow();
+  showWorlds(doc);
   showSettings(doc);
   showParams(doc, app.live ? (name, value) => app.live.set(app.save, name, value) : null);
   setPhase(wasPhase);
   go(wasStep);
   complete();
   app.picked ||= app.live !== null;
+}
+
+/** A choice of world, where there are several: that of the robot, or one that stays. */
+function showWorlds(doc) {
+  const worlds = worldsOf(doc);
+  app.world = null;
+  $('world').parentElement.hidden = worlds.length < 2;
+  $('world').replaceChildren(el('option', { value: '', text: "the robot's" }), ...worlds.map((world, index) => el('option', { value: index, text: world.name })));
+}
+
+/** Shows the world in which the robot is, unless one was chosen. */
+function turnToWorld(steps, index) {
+  const world = app.world ?? (index >= 0 && steps.world ? steps.world[index] : 0);
+  if (map.world === world) return;
+  map.world = world;
+  stale.base = true;
 }
 
 function checkedNow() {
@@ -207,9 +225,10 @@ function drawFrame(now) {
   if (!app.doc) return;
   advance(elapsed);
   const steps = track();
+  turnToWorld(steps, steps ? steps.index(app.step) : -1);
   if (stale.base) {
     map.drawBase(app.doc, steps, app.litRule);
-    $('map-note').textContent = mapNote(app.doc, steps, app.phase);
+    $('map-note').textContent = `${worldsOf(app.doc).length > 1 ? `${map.ground(app.doc).name}, ` : ''}${mapNote(app.doc, steps, app.phase)}`;
     curve.drawBase(app.doc, seedView(), app.before);
     timeline.drawBase(app.doc, steps, app.litRule, app.phase === 'learning' ? app.doc.swaps : []);
     curve.stale = true;
@@ -223,7 +242,7 @@ function drawFrame(now) {
   }
   // While it plays, once a second is enough for whoever listens.
   if (stale.base || (stale.moment && (!app.playing || now - drawFrame.said > 1000))) {
-    say(app, seedView(), steps, index);
+    say(app, seedView(), steps, index, map.ground(app.doc));
     drawFrame.said = now;
   }
   if (curve.stale) curve.drawOver(app.phase === 'learning' ? Math.floor(app.step / app.doc.window_steps) : null);
@@ -279,6 +298,11 @@ function start() {
   $('back').addEventListener('click', () => { pause(); go(app.step - 1); });
   $('forth').addEventListener('click', () => { pause(); go(app.step + 1); });
   $('speed').addEventListener('change', (event) => { setSpeed(Number(event.target.value)); event.target.blur(); });
+  $('world').addEventListener('change', (event) => {
+    app.world = event.target.value === '' ? null : Number(event.target.value);
+    stale.base = true;
+    event.target.blur();
+  });
   $('seed').addEventListener('change', (event) => { pickSeed(Number(event.target.value)); event.target.blur(); });
   for (const button of $('phase').children) button.addEventListener('click', () => { setPhase(button.dataset.phase); go(0); });
   document.addEventListener('keydown', key);

@@ -48,6 +48,8 @@ class Track {
     this.reward = new Float32Array(bytes(raw.reward));
     this.bits = new Uint8Array(bytes(raw.fired));
     this.words = Math.ceil(rules / 8);
+    // Which world, of several.
+    this.world = raw.world ? new Uint16Array(bytes(raw.world)) : null;
     this.beam = new Uint16Array(bytes(raw.beam));
     this.nearestBeam = new Uint16Array(bytes(raw.nearest_beam));
     this.nearest = new Uint16Array(bytes(raw.nearest));
@@ -110,6 +112,9 @@ const RECOVER = 1;
 const CONTACT = 2;
 const FALLEN = 4;
 const EXPLORED = 8;
+const HOP = 16;
+/** The robot was put elsewhere after the step. */
+const MOVES = RECOVER | HOP;
 const NO_BEAM = 65535;
 
 const whole = (number) => Math.round(number).toLocaleString('en-US');

@@ -7,11 +7,22 @@ class WorldMap {
   constructor(box) {
     [this.base, this.over] = box.querySelectorAll('canvas');
     this.view = null;
+    this.world = 0;
+  }
+
+  /** Whether a step was done in the world that is shown. */
+  shows(track, index) {
+    return !track.world || track.world[index] === this.world;
+  }
+
+  ground(doc) {
+    return worldsOf(doc)[this.world] ?? doc.world;
   }
 
   /** What stands, and where each rule fired. */
   drawBase(doc, track, litRule) {
-    const [x0, y0, x1, y1] = doc.world.bounds_m;
+    const ground = this.ground(doc);
+    const [x0, y0, x1, y1] = ground.bounds_m;
     this.base.parentElement.style.setProperty('--shape', `${(x1 - x0).toFixed(2)} / ${(y1 - y0).toFixed(2)}`);
     const sheet = fit(this.base);
     if (!sheet) return;
@@ -22,18 +33,18 @@ class WorldMap {
     const fromX = left + (width - left - right - spanX) / 2;
     const fromY = above + (height - above - below - spanY) / 2;
     this.view = { floor: [fromX - 1, fromY - 1, spanX + 2, spanY + 2], scale, x: (m) => fromX + (m - x0) * scale, y: (m) => fromY + (y1 - m) * scale };
-    pen.fillStyle = floorInk(doc.world.floor);
+    pen.fillStyle = floorInk(ground.floor);
     pen.fillRect(fromX, fromY, spanX, spanY);
     pen.save();
     pen.beginPath();
     pen.rect(...this.view.floor);
     pen.clip();
-    for (const solid of doc.world.solids) this.solid(pen, solid);
+    for (const solid of ground.solids) this.solid(pen, solid);
     const places = (way) => way.map(([x, y]) => [this.view.x(x), this.view.y(y)]);
-    for (const { way_m: way } of doc.world.movers) if (way) line(pen, places(way), ink.quiet, 1, [2, 3]);
-    for (const gate of doc.world.gates_m ?? []) line(pen, places(gate), ink.quiet, 1, [2, 3]);
-    for (const circle of doc.world.places_m ?? []) line(pen, places(ring(circle)), ink.quiet, 1, [2, 3]);
-    if (doc.world.route_m) line(pen, places(doc.world.route_m), ink.route, 1, [5, 4]);
+    for (const { way_m: way } of ground.movers) if (way) line(pen, places(way), ink.quiet, 1, [2, 3]);
+    for (const gate of ground.gates_m ?? []) line(pen, places(gate), ink.quiet, 1, [2, 3]);
+    for (const circle of ground.places_m ?? []) line(pen, places(ring(circle)), ink.quiet, 1, [2, 3]);
+    if (ground.route_m) line(pen, places(ground.route_m), ink.route, 1, [5, 4]);
     if (track) this.marks(pen, doc, track, litRule);
     pen.restore();
     for (const at of ticks(x0, x1, spanX / 70)) if (this.view.x(at) < fromX + spanX - 8) label(pen, short(at), this.view.x(at), fromY + spanY + 14, 'center');
@@ -82,7 +93,7 @@ class WorldMap {
       pen.fillStyle = ruleInk(rule);
       pen.globalAlpha = crowd ? Math.max(0.12, strength * Math.sqrt(MANY_MARKS / count)) : strength;
       for (let index = 0; index < track.count; index += 1) {
-        if (!track.fired(index, rule)) continue;
+        if (!track.fired(index, rule) || !this.shows(track, index)) continue;
         const [x, y] = [this.view.x(track.x[index] * doc.unit_m), this.view.y(track.y[index] * doc.unit_m)];
         ruleMark(pen, rule, x, y, crowd ? 2 : litRule === rule ? 4.5 : 3.5);
       }
@@ -96,13 +107,13 @@ class WorldMap {
     if (!sheet || !this.view || !track) return;
     const { pen } = sheet;
     const index = track.index(step);
-    if (index < 0) return;
+    if (index < 0 || !this.shows(track, index)) return;
     const pose = between(track, index, share, doc.unit_m);
     pen.beginPath();
     pen.rect(...this.view.floor);
     pen.clip();
     this.trail(pen, doc, track, index, pose);
-    doc.world.movers.forEach((mover, number) => this.mover(pen, mover, moverPose(track, number, index, share, doc.unit_m)));
+    this.ground(doc).movers.forEach((mover, number) => this.mover(pen, mover, moverPose(track, number, index, share, doc.unit_m)));
     this.fan(pen, doc, track, index, pose);
     this.robot(pen, doc, pose, track.flags[index]);
   }
@@ -119,10 +130,11 @@ class WorldMap {
       pen.beginPath();
       let lifted = true;
       for (let at = start; at <= end; at += 1) {
+        if (!this.shows(track, at)) { lifted = true; continue; }
         const point = at === index ? [pose.x, pose.y] : [track.x[at] * doc.unit_m, track.y[at] * doc.unit_m];
         if (lifted) pen.moveTo(this.view.x(point[0]), this.view.y(point[1]));
         else pen.lineTo(this.view.x(point[0]), this.view.y(point[1]));
-        lifted = (track.flags[at] & RECOVER) !== 0 || (at + 1 < track.count && track.step(at + 1) !== track.step(at) + 1);
+        lifted = (track.flags[at] & MOVES) !== 0 || !this.shows(track, at + 1) || (at + 1 < track.count && track.step(at + 1) !== track.step(at) + 1);
       }
       pen.stroke();
     }
@@ -201,6 +213,9 @@ class WorldMap {
   }
 }
 
+/** All worlds of a run, the home world first. */
+const worldsOf = (doc) => [doc.world, ...(doc.further_worlds ?? [])];
+
 /** A rule that fires at most steps would cover the plan; it is drawn only when it is pointed at. */
 const covers = (track, rule) => track.firings(rule) > 0 && track.firings(rule) >= track.count / 2;
 
@@ -213,7 +228,7 @@ function mapNote(doc, track, phase) {
 
 /** The robot's pose a share of the way from the step before, where no recovery lies between. */
 function between(track, index, share, unit) {
-  const apart = index > 0 && (track.flags[index - 1] & RECOVER);
+  const apart = index > 0 && (track.flags[index - 1] & MOVES);
   return mixed(track, track, index, apart ? 1 : share, unit);
 }
 
@@ -225,7 +240,7 @@ function ring([x, y, radius]) {
 
 /** The same of something that drives by itself: recovery may have put it back to where it begins. */
 function moverPose(track, number, index, share, unit) {
-  const apart = index > 0 && (track.flags[index - 1] & RECOVER);
+  const apart = index > 0 && (track.flags[index - 1] & MOVES);
   return mixed(track, track.movers[number], index, apart ? 1 : share, unit);
 }
 

@@ -5,6 +5,7 @@ function showStep(doc, track, index, step) {
   const flags = track.flags[index];
   const events = [
     flags & CONTACT ? 'contact' : '', flags & FALLEN ? 'fallen' : '', flags & RECOVER ? 'recovery follows' : '',
+    flags & HOP ? 'stayed long enough: it goes on elsewhere' : '',
     flags & EXPLORED ? 'explored: not the best known action' : '',
   ].filter(Boolean).join(', ');
   const rows = [
@@ -15,6 +16,7 @@ function showStep(doc, track, index, step) {
     ['reward', signed(track.reward[index])],
     ['nearest', `${(track.nearest[index] / 1000).toFixed(2)} m, ${beamWords(track.nearestBeam[index], doc.scan)}`],
     ['events', events || 'none'],
+    ...(track.world ? [['world', worldsOf(doc)[track.world[index]]?.name ?? '']] : []),
   ];
   const box = $('step');
   if (box.children.length !== 2 * rows.length) box.replaceChildren(...rows.flatMap(([name]) => [el('dt', { text: name }), el('dd')]));
@@ -50,7 +52,8 @@ function showReasons(doc, track, index, reasons) {
   const rules = doc.rules.map((rule, at) => ({ rule, at, fired: track.fired(index, at), why: why.get(rule.name) }));
   const gone = [...why.values()].filter((rule) => rule.added !== null && !doc.rules.some(({ name }) => name === rule.name));
   const shown = rules.filter(({ fired, why }) => fired || why);
-  $('reasons').replaceChildren(el('ul', {}, ...shown.map(({ rule, at, fired, why }) => {
+  const drawn = (reasons?.drawn ?? []).map(([key, value]) => el('li', { class: 'quiet', text: `drawn: ${key} = ${value}` }));
+  $('reasons').replaceChildren(el('ul', {}, ...drawn, ...shown.map(({ rule, at, fired, why }) => {
     const held = why && why.needed > 1 ? `; held ${why.held} of ${why.needed} steps` : '';
     const words = fired ? `${signed(why ? why.added : addedBy(doc, track, index, at))}${held}`
       : why && !why.asked ? 'not asked: an earlier rule ended the step' : `silent${held}`;

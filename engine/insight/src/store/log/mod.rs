@@ -9,14 +9,17 @@
 //! | 32 | SHA-256 of all before |
 //! | chunks | up to 1,024 records of learning, then 32 bytes: SHA-256 of the digest of the chunk before and these records; each leg begins a chunk of its own; the test follows in the same way |
 //!
-//! The format is 1, and 2 if there are earlier legs. A swap is so an event in the log: it comes after as many steps as the
+//! The format is 1, 2 if there are earlier legs, and 3 of a run in several worlds or with values that are drawn for each attempt,
+//! with legs or without. A swap is so an event in the log: it comes after as many steps as the
 //! legs before it have; what became of the table stands with the script in `run.toml`.
 //!
 //! The chain of digests begins with 32 zeros and ends as `log_sha256` in `summary.json`. All sizes follow from the header,
 //! so chunk `n` of learning begins at `48 + header + n * (1,024 * record + 32)`, and each chunk can be checked by itself. A
 //! record is laid out as in `experiment/ledger/record.rs`: reward, x, y, yaw as 8-byte floats; state, next state; action, flags
 //! (recover, contact, fallen, explored, prey), beam of the rule, nearest beam as 2 bytes each; nearest range, height, prey
-//! x, y, yaw and coverage as 4-byte floats; a bit for each rule; an 8-byte float for each rule without a fixed value.
+//! x, y, yaw and coverage as 4-byte floats; a bit for each rule; an 8-byte float for each rule without a fixed value;
+//! in format 3 the number of the world (0 is the home world) and whether the attempt is broken off after the step, 4 bytes each,
+//! and an 8-byte float for each value that is drawn.
 
 mod read;
 mod stored;
@@ -39,6 +42,8 @@ pub const MAGIC: [u8; 8] = *b"engnlog\n";
 const FORMAT: u32 = 1;
 /// The format of a log with more than one leg.
 const FORMAT_OF_LEGS: u32 = 2;
+/// The format of a log whose records hold the world and what was drawn.
+const FORMAT_OF_WORLDS: u32 = 3;
 /// Magic, format, length of the header.
 const PREFIX_BYTES: usize = 16;
 
@@ -118,7 +123,11 @@ pub fn log_to_bytes(log: &RunLog, plan: &Plan, seed: u64, run: &str) -> Result<V
         learning: PhaseEntry::of_last_leg(&log.learning),
         test: PhaseEntry::of_last_leg(&log.test),
     };
-    let format = if header.earlier.is_empty() { FORMAT } else { FORMAT_OF_LEGS };
+    let format = match header.earlier.is_empty() {
+        _ if plan.varies() => FORMAT_OF_WORLDS,
+        true => FORMAT,
+        false => FORMAT_OF_LEGS,
+    };
     let text = serde_json::to_vec(&header)
         .map_err(|error| Box::new(damaged(format!("the log's header cannot be written: {error}"))))?;
     let records: usize = log.chunks().map(|(records, digest)| records.len() + digest.len()).sum();

@@ -1,6 +1,6 @@
 //! A log file read back: nothing in it is believed before it is checked.
 
-use super::{FORMAT, FORMAT_OF_LEGS, Header, MAGIC, PREFIX_BYTES, PhaseEntry, RuleEntry, damaged};
+use super::{FORMAT, FORMAT_OF_LEGS, FORMAT_OF_WORLDS, Header, MAGIC, PREFIX_BYTES, PhaseEntry, RuleEntry, damaged};
 use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::digest::Digest;
 use engine::experiment::{
@@ -75,8 +75,8 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8])> {
     if bytes[..8] != MAGIC {
         return damaged("this file is not a log of a run".to_owned()).fail();
     }
-    if ![FORMAT, FORMAT_OF_LEGS].contains(&format) {
-        let message = format!("the log has format {format}, this engine reads formats {FORMAT} and {FORMAT_OF_LEGS}");
+    if ![FORMAT, FORMAT_OF_LEGS, FORMAT_OF_WORLDS].contains(&format) {
+        let message = format!("the log has format {format}, this engine reads formats {FORMAT} to {FORMAT_OF_WORLDS}");
         let error = Diagnostic::new("E-LOG-FILE", message);
         return error.help("read it with the engine that wrote it, or run the behaviour again").fail();
     }
@@ -89,7 +89,7 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8])> {
     }
     let header: Header = serde_json::from_slice(&all_before[PREFIX_BYTES..])
         .map_err(|error| Box::new(damaged(format!("the log's header cannot be read: {error}"))))?;
-    if header.earlier.is_empty() != (format == FORMAT) {
+    if format != FORMAT_OF_WORLDS && header.earlier.is_empty() != (format == FORMAT) {
         return damaged(format!("a log of format {format} cannot have {} earlier legs", header.earlier.len())).fail();
     }
     Ok((header, &bytes[end + DIGEST_BYTES..]))
@@ -169,11 +169,18 @@ fn check_records(log: &RunLog, plan: &Plan) -> Result<()> {
             && wide.iter().all(|number| number.is_finite())
             && narrow.iter().all(|number| number.is_finite())
     };
+    let worlds = plan.worlds.layouts().len();
+    let was_there = |ledger: &Ledger, step: usize| {
+        ledger
+            .attempt(step)
+            .is_none_or(|attempt| attempt.world < worlds && attempt.drawn.iter().all(|drawn| drawn.is_finite()))
+    };
     for (name, ledger) in [("learning", &log.learning), ("the test", &log.test)] {
-        let wrong = ledger
-            .records()
-            .enumerate()
-            .find(|(step, record)| !is_possible(record) || !ledger.fired(*step).all(|(_, value)| value.is_finite()));
+        let wrong = ledger.records().enumerate().find(|(step, record)| {
+            !is_possible(record)
+                || !ledger.fired(*step).all(|(_, value)| value.is_finite())
+                || !was_there(ledger, *step)
+        });
         if let Some((step, _)) = wrong {
             return damaged(format!("step {step} of {name} in the log is not one that the run can have done")).fail();
         }

@@ -66,7 +66,7 @@ fn measure(plan: &Plan, arguments: &BenchArguments) -> Result<BenchReport> {
     let copy_us = clock::copy_us(plan, arguments.steps);
     Ok(BenchReport {
         behaviour: plan.behaviour.name().to_owned(),
-        world: plan.layout.name.clone(),
+        world: plan.worlds.title(),
         image: [camera.width_px, camera.height_px],
         lens: camera.lens.word().to_owned(),
         textured: arguments.texture,

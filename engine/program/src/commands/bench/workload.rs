@@ -38,8 +38,8 @@ pub(super) fn plan(arguments: &BenchArguments) -> Result<Plan> {
     let overrides = Overrides {
         world: arguments.world.clone(),
         steps: Some(arguments.steps.max(LEAST_STEPS)),
-        test_steps: None,
         set,
+        ..Overrides::default()
     };
     let filters = || crate::commands::sources::catalogue(&arguments.filters);
     let plan = Plan::load(&arguments.behaviour, &overrides, filters)?;
