@@ -1,5 +1,8 @@
 //! A learned table that learns no more.
 
+use std::sync::Arc;
+
+use super::memory::{PooledRow, Pools};
 use super::{QTable, Softmax};
 use crate::allowed::Allowed;
 use crate::random::Random;
@@ -9,14 +12,18 @@ use crate::settings::LearnerSettings;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Policy {
     actions: usize,
-    /// By state; `None` where the state was never visited.
+    /// By state; `None` where nothing was learned about the state itself.
     rows: Vec<Option<PolicyRow>>,
+    /// At which it chooses; that of the settings if it has none of its own.
+    temperature: Option<f64>,
+    /// What answers for states without a row, if anything does.
+    pools: Option<Arc<Pools>>,
 }
 
 /// What was learned about one state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PolicyRow {
-    /// How often it was visited.
+    /// How often it was visited; 0 if its values come from what is known of other states.
     pub visits: u64,
     /// The value of each action.
     pub values: Vec<f64>,
@@ -26,7 +33,31 @@ impl Policy {
     /// A policy from its rows, by state.
     #[must_use]
     pub fn new(actions: usize, rows: Vec<Option<PolicyRow>>) -> Self {
-        Self { actions, rows }
+        Self { actions, rows, temperature: None, pools: None }
+    }
+
+    /// It chooses at a temperature of its own.
+    #[must_use]
+    pub fn at_temperature(self, temperature: f64) -> Self {
+        Self { temperature: Some(temperature), ..self }
+    }
+
+    /// For states without a row these answer.
+    #[must_use]
+    pub fn answering(self, pools: Option<Arc<Pools>>) -> Self {
+        Self { pools, ..self }
+    }
+
+    /// The temperature at which it chooses, if it has one of its own.
+    #[must_use]
+    pub const fn temperature(&self) -> Option<f64> {
+        self.temperature
+    }
+
+    /// What answers for states without a row, if anything does.
+    #[must_use]
+    pub fn pools(&self) -> Option<&Pools> {
+        self.pools.as_deref()
     }
 
     pub(super) fn from_table(table: &QTable) -> Self {
@@ -42,10 +73,10 @@ impl Policy {
         &self.rows
     }
 
-    /// How many states it knows.
+    /// How many states were visited.
     #[must_use]
     pub fn states_met(&self) -> usize {
-        self.rows.iter().flatten().count()
+        self.rows.iter().flatten().filter(|row| row.visits > 0).count()
     }
 
     /// How many actions there are.
@@ -60,24 +91,53 @@ impl Policy {
         self.rows.get(state)?.as_ref().map(|row| super::q_table::best_of(&row.values))
     }
 
-    /// The best of some actions of a state and its value, if the state was ever visited.
-    pub(crate) fn best_among(&self, state: usize, allowed: Allowed) -> Option<(usize, f64)> {
-        self.rows.get(state)?.as_ref().map(|row| super::q_table::best_among(&row.values, allowed))
-    }
-
-    /// An action by softmax at the lowest temperature; any action, equally likely, in a state never visited. Only actions that are allowed.
-    pub(crate) fn choose(&self, state: usize, allowed: Allowed, softmax: &mut Softmax, random: &mut Random) -> usize {
-        match self.rows.get(state) {
-            Some(Some(row)) => softmax.choose(&row.values, allowed, u64::MAX, random),
-            _ => any_of(self.actions, allowed, random),
+    /// The values of a state's actions, in `room` where the state has no row of its own; nothing in a state of which it knows
+    /// nothing.
+    fn values<'a>(&'a self, state: usize, room: &'a mut PooledRow) -> Option<&'a [f64]> {
+        match (self.rows.get(state), &self.pools) {
+            (Some(Some(row)), _) => Some(&row.values),
+            (_, Some(pools)) => {
+                pools.answer(state, room);
+                Some(&room.values)
+            }
+            _ => None,
         }
     }
 
-    /// The softmax that fits this policy.
-    #[must_use]
-    pub(crate) fn softmax(&self, settings: &LearnerSettings) -> Softmax {
-        Softmax::new(settings, self.actions)
+    /// An action by softmax at the lowest temperature, and whether it is not the best one known; any action, equally likely, in
+    /// a state of which nothing is known. Only actions that are allowed.
+    pub(crate) fn choose(
+        &self,
+        state: usize,
+        allowed: Allowed,
+        room: &mut PolicyRoom,
+        random: &mut Random,
+    ) -> (usize, bool) {
+        match self.values(state, &mut room.row) {
+            Some(values) => {
+                let action = room.softmax.choose(values, allowed, u64::MAX, random);
+                (action, super::q_table::best_among(values, allowed).0 != action)
+            }
+            None => (any_of(self.actions, allowed, random), true),
+        }
     }
+
+    /// Room to choose in, at the policy's temperature or that of the settings.
+    #[must_use]
+    pub(crate) fn room(&self, settings: &LearnerSettings) -> PolicyRoom {
+        let softmax = Softmax::new(settings, self.actions);
+        let softmax = match self.temperature {
+            Some(temperature) => softmax.at_temperature(temperature),
+            None => softmax,
+        };
+        PolicyRoom { softmax, row: PooledRow::default() }
+    }
+}
+
+/// Room for a policy to choose in, so that choosing allocates nothing.
+pub(crate) struct PolicyRoom {
+    softmax: Softmax,
+    row: PooledRow,
 }
 
 /// One of the actions that are allowed, each as likely as the others.

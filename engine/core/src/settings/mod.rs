@@ -157,6 +157,9 @@ pub struct LearnerSettings {
     pub failure_is_terminal: bool,
     pub mirror: bool,
     pub replay: u64,
+    pub memory_steps: u64,
+    pub memory_discount: f64,
+    pub memory_lambda: f64,
 }
 
 /// What `then recover` does.

@@ -45,7 +45,7 @@ impl StateMap for GridMap {
     fn digits(&self) -> Vec<Digit> {
         let (rows, columns) = self.grid.size();
         let (values, count) = if self.settings.fill { (rows + 1, columns) } else { (2, rows * columns) };
-        vec![Digit { part: 0, values }; count]
+        (0..count).map(|digit| Digit { part: 0, column: digit % columns, values }).collect()
     }
 
     fn describe(&self, state: usize) -> Described {

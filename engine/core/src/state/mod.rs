@@ -37,6 +37,8 @@ pub struct Percept<'a> {
 pub struct Digit {
     /// The part of the state that it belongs to: digits of one part are learned from together.
     pub part: usize,
+    /// The column of a grid that it belongs to, from 0 on the left; 0 for a number that stands alone.
+    pub column: usize,
     /// How many values it has.
     pub values: usize,
 }
@@ -86,7 +88,7 @@ pub struct Cells {
 ///         2
 ///     }
 ///     fn digits(&self) -> Vec<Digit> {
-///         vec![Digit { part: 0, values: 2 }]
+///         vec![Digit { part: 0, column: 0, values: 2 }]
 ///     }
 ///     fn describe(&self, state: usize) -> Described {
 ///         Described { text: ["left", "right"][state].to_owned(), cells: None }

@@ -1,5 +1,7 @@
 //! `policy.toml`: a learned table with the filter, grid and actions that it belongs to.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use super::filter_entry::{FilterEntry, ViewEntry};
@@ -10,7 +12,7 @@ use engine::digest::Digest;
 use engine::experiment::Plan;
 use engine::filter::Catalogue;
 use engine::geometry::Twist;
-use engine::learner::{Policy, PolicyRow};
+use engine::learner::{Policy, PolicyRow, PooledSums, Pools};
 use engine::settings::{FilterSettings, GridSettings, Settings, ViewSettings};
 use engine::state::{GridMap, MAX_STATES, StateMap};
 
@@ -19,6 +21,8 @@ pub const POLICY_FILE: &str = "policy.toml";
 const FORMAT: u32 = 2;
 /// The format of a policy whose states have several parts.
 const FORMAT_OF_PARTS: u32 = 3;
+/// The format of a policy of the learner `memory`.
+const FORMAT_OF_MEMORY: u32 = 4;
 
 #[derive(Deserialize)]
 struct PolicyFormat {
@@ -43,6 +47,9 @@ struct PolicyFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     fill: Option<bool>,
     states: usize,
+    /// At which it chooses, if not at the settings' lowest one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    temperature: Option<f64>,
     /// Forward speed in m/s and turning speed in rad/s.
     actions: Vec<[f64; 2]>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -55,6 +62,9 @@ struct PolicyFile {
     part: Vec<toml::Table>,
     #[serde(default)]
     state: Vec<StateEntry>,
+    /// What answers for states that are not listed, if anything does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pools: Option<PooledSums>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -120,7 +130,11 @@ fn text_of(
         Some(StateEntry { index, visits: row.visits, best, values: row.values.clone() })
     });
     let file = PolicyFile {
-        format: if part.is_empty() { FORMAT } else { FORMAT_OF_PARTS },
+        format: match part.is_empty() {
+            _ if policy.temperature().is_some() => FORMAT_OF_MEMORY,
+            true => FORMAT,
+            false => FORMAT_OF_PARTS,
+        },
         part,
         behaviour: behaviour.to_owned(),
         run_sha256: run.map(|run| Digest::of(run.as_bytes()).to_string()),
@@ -129,6 +143,8 @@ fn text_of(
         occupied: grid.as_ref().map(|grid| grid.occupied),
         fill: grid.as_ref().map(|grid| grid.fill),
         states: policy.rows().len(),
+        temperature: policy.temperature(),
+        pools: policy.pools().map(Pools::to_sums),
         actions: settings.actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
         filter,
         view,
@@ -145,9 +161,9 @@ impl StoredPolicy {
     /// If the file is damaged or of another format.
     pub fn parse(source: &SourceText) -> Result<Self> {
         let format: PolicyFormat = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
-        if ![FORMAT, FORMAT_OF_PARTS].contains(&format.format) {
+        if !(FORMAT..=FORMAT_OF_MEMORY).contains(&format.format) {
             let message =
-                format!("has format {}, this engine reads formats {FORMAT} and {FORMAT_OF_PARTS}", format.format);
+                format!("has format {}, this engine reads formats {FORMAT} to {FORMAT_OF_MEMORY}", format.format);
             return Err(unfit(source, &message, "learn the behaviour again"));
         }
         let file: PolicyFile = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
@@ -173,6 +189,8 @@ impl StoredPolicy {
             }
             rows[index] = Some(PolicyRow { visits, values });
         }
+        let policy = remembering(Policy::new(file.actions.len(), rows), file.temperature, file.pools)
+            .ok_or_else(|| unfit(source, "has damaged sums or no temperature", "learn the behaviour again"))?;
         let entries = file.view.first().map_or(file.filter, |view| view.filter.clone());
         Ok(Self {
             behaviour: file.behaviour,
@@ -182,7 +200,7 @@ impl StoredPolicy {
             grid,
             parts: file.part,
             views: file.view.iter().map(ViewEntry::settings).collect(),
-            policy: Policy::new(file.actions.len(), rows),
+            policy,
             actions: file.actions.iter().map(|[linear, angular]| Twist::new(*linear, *angular)).collect(),
         })
     }
@@ -228,6 +246,17 @@ impl StoredPolicy {
             None => Ok(()),
         }
     }
+}
+
+/// A policy with what only the learner `memory` leaves; nothing if that is damaged.
+fn remembering(policy: Policy, temperature: Option<f64>, pools: Option<PooledSums>) -> Option<Policy> {
+    let Some(temperature) = temperature else { return pools.is_none().then_some(policy) };
+    let pools = match pools {
+        Some(sums) => Some(Arc::new(Pools::from_sums(&sums, policy.actions())?)),
+        None => None,
+    };
+    let finite = temperature.is_finite() && temperature > 0.0;
+    finite.then(|| policy.at_temperature(temperature).answering(pools))
 }
 
 /// The parts of a map's states; none if it has one.
@@ -329,7 +358,7 @@ mod tests {
     fn the_first_format_is_named_and_not_guessed_at() {
         let old = "format = 1\nbehaviour = \"wall\"\nfilters = [\"sobel(threshold: 60)\"]\n";
         let error = StoredPolicy::parse(&SourceText::new("policy.toml", old)).unwrap_err();
-        assert_eq!(error.message, "'policy.toml' has format 1, this engine reads formats 2 and 3");
+        assert_eq!(error.message, "'policy.toml' has format 1, this engine reads formats 2 to 4");
     }
 
     #[test]
