@@ -3,7 +3,7 @@
 use super::{Choice, Chooser, Disagreements, Step};
 use crate::allowed::Allowed;
 use crate::diagnostic::Result;
-use crate::learner::{Combined, Learner, Policy, PolicyRoom, Transition};
+use crate::learner::{Combined, Learner, Policy, PolicyRoom};
 use crate::random::Random;
 
 /// A learner that learns from every step.
@@ -16,16 +16,7 @@ impl<L: Learner + ?Sized> Chooser for Learns<'_, L> {
     }
 
     fn learn(&mut self, step: &Step) {
-        self.0.learn(&Transition {
-            state: step.state,
-            action: step.action,
-            reward: step.reward,
-            next_state: step.next_state,
-            ending: step.ending(),
-            potential: step.potential,
-            next_potential: step.next_potential,
-            next_allowed: step.next_allowed,
-        });
+        self.0.learn(&step.transition());
     }
 
     fn forget(&mut self) {

@@ -5,7 +5,7 @@
 
 use super::Plan;
 use crate::learner::Carry;
-use crate::settings::{SETTINGS, Settings};
+use crate::settings::{LearnerKind, SETTINGS, Settings};
 
 /// A part of learning under one script, before the reward was swapped.
 #[derive(Clone)]
@@ -89,7 +89,9 @@ impl Plan {
         };
         let same_world = other.layout.source.text == self.layout.source.text;
         let fixed = first_fixed_difference(&other.settings, &self.settings).map(|(what, _)| what);
+        let remembers = |plan: &Self| plan.settings.learner.kind == LearnerKind::Memory;
         fixed
+            .or_else(|| (remembers(other) != remembers(self)).then(|| "the way of learning".to_owned()))
             .or_else(|| (!same_world).then(|| "the world".to_owned()))
             .or_else(|| (digests(other) != digests(self)).then(|| "the filters".to_owned()))
     }

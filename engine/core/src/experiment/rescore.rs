@@ -24,6 +24,8 @@ struct Judged {
     then: Option<Then>,
     /// The actions that the script's guards leave at its end.
     next_allowed: Allowed,
+    /// What delayed rules had built up before the step, and after it.
+    potentials: [f64; 2],
     /// The robot was put elsewhere after this step, because the recorded run asked for it.
     moved: bool,
 }
@@ -88,7 +90,8 @@ impl Rescored {
     #[must_use]
     pub fn changed_states(&self) -> Vec<usize> {
         let best = |policy: &Policy, state| policy.best(state).map(|(action, _)| action);
-        let states = 0..self.policy_before.rows().len();
+        let met = |state: &usize| self.policy_before.is_met(*state) || self.policy_after.is_met(*state);
+        let states = (0..self.policy_before.rows().len()).filter(met);
         let mut changed: Vec<usize> =
             states.filter(|state| best(&self.policy_before, *state) != best(&self.policy_after, *state)).collect();
         changed.sort_by_key(|state| (std::cmp::Reverse(self.visits(*state)), *state));
@@ -140,12 +143,15 @@ pub fn rescore(plan: &Plan, new: &Plan, seed: u64, ledger: &Ledger, passes: u64)
         vec![RuleScore::default(); new.behaviour.rules().len()],
     ];
     let mut judged: [Vec<Judged>; 2] = [Vec::with_capacity(ledger.len()), Vec::with_capacity(ledger.len())];
+    let mut potential = 0.0;
     while let Some(step) = playback.advance()? {
         judge.facts_mut().clone_from(playback.cycle().facts());
         let verdict = judge.judge()?;
         let next_allowed = judge.leave().allowed;
+        let potentials = [std::mem::replace(&mut potential, judge.potential()), judge.potential()];
         if step.then.is_some() || verdict.then.is_some() {
             judge.recovered();
+            potential = 0.0;
         }
         for (scores, fired) in scores.iter_mut().zip([playback.cycle().fired(), judge.fired()]) {
             for (score, value) in scores.iter_mut().zip(fired) {
@@ -154,8 +160,10 @@ pub fn rescore(plan: &Plan, new: &Plan, seed: u64, ledger: &Ledger, passes: u64)
             }
         }
         let moved = step.then.is_some();
-        judged[0].push(Judged { reward: step.reward, then: step.then, next_allowed: step.next_allowed, moved });
-        judged[1].push(Judged { reward: verdict.reward, then: verdict.then, next_allowed, moved });
+        let old = [step.potential, step.next_potential];
+        let (then, allowed) = (step.then, step.next_allowed);
+        judged[0].push(Judged { reward: step.reward, then, next_allowed: allowed, potentials: old, moved });
+        judged[1].push(Judged { reward: verdict.reward, then: verdict.then, next_allowed, potentials, moved });
     }
     let [before, after] = judged;
     let pairs = || before.iter().zip(&after);
@@ -207,8 +215,8 @@ fn learn_along(plan: &Plan, seed: u64, ledger: &Ledger, judged: &[Judged], passe
                 reward: judged.reward,
                 next_state: record.next_state as usize,
                 ending: judged.then.map(|then| then.ending(judged.reward)),
-                potential: 0.0,
-                next_potential: 0.0,
+                potential: judged.potentials[0],
+                next_potential: judged.potentials[1],
                 next_allowed: judged.next_allowed,
             });
             // What follows does not follow from this step if the robot was put elsewhere.

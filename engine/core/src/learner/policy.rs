@@ -79,6 +79,12 @@ impl Policy {
         self.rows.iter().flatten().filter(|row| row.visits > 0).count()
     }
 
+    /// Whether a state was visited.
+    #[must_use]
+    pub fn is_met(&self, state: usize) -> bool {
+        self.rows.get(state).and_then(Option::as_ref).is_some_and(|row| row.visits > 0)
+    }
+
     /// How many actions there are.
     #[must_use]
     pub const fn actions(&self) -> usize {

@@ -119,7 +119,7 @@ fn votes(side: &Side) -> BTreeMap<usize, Votes> {
     let mut all: BTreeMap<usize, Votes> = BTreeMap::new();
     for policy in side.seeds.iter().filter_map(|seed| seed.policy.as_ref()) {
         for (state, row) in policy.rows().iter().enumerate() {
-            if let (Some(row), Some((action, _))) = (row, policy.best(state)) {
+            if let (Some(row), Some((action, _))) = (row, policy.best(state).filter(|_| policy.is_met(state))) {
                 let votes = all.entry(state).or_default();
                 votes.visits += row.visits;
                 *votes.by_action.entry(action).or_default() += 1;

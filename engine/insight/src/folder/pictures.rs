@@ -67,7 +67,7 @@ fn draw_policy(folder: &Path, plan: &Plan, learned: &Learned) -> Result<()> {
     let (map, (rows, columns)) = (plan.state_map()?, plan.drawn_grid()?);
     let policy_of = &learned.policy;
     let state = |(state, row): (usize, &Option<PolicyRow>)| {
-        let row = row.as_ref()?;
+        let row = row.as_ref().filter(|row| row.visits > 0)?;
         let (best, value) = policy_of.best(state)?;
         let best = plan.settings.actions[best];
         let cells = map.describe(state).cells.map_or_else(Vec::new, |cells| cells.filled);

@@ -48,6 +48,11 @@ fn blind_starts(plan: &Plan, findings: &mut Vec<Finding>) {
     }
 }
 
+/// Whether a setting of learners is about tables, which a learner that remembers does not keep.
+fn of_tables(key: &str) -> bool {
+    !["kind", "failure_is_terminal", "mirror"].contains(&key) && !key.starts_with("memory_")
+}
+
 /// Why a setting has no effect, and what to do about it.
 fn idle(plan: &Plan, name: &str) -> Option<(String, &'static str)> {
     let (settings, outline) = (&plan.settings, plan.behaviour.outline());
@@ -57,6 +62,18 @@ fn idle(plan: &Plan, name: &str) -> Option<(String, &'static str)> {
     let kind = |kinds: &[LearnerKind]| kinds.contains(&learner.kind);
     let why = match (group, key) {
         ("laser", _) if !reads_laser => ("no rule reads the laser".to_owned(), "take it out, or read laser.nearest"),
+        ("learner", key) if kind(&[LearnerKind::Memory]) && of_tables(key) => (
+            format!("learner \"memory\" has no {key}"),
+            match key {
+                "discount" => "write memory_discount",
+                "trace_decay" => "write memory_lambda",
+                _ => "take it out, or write learner(\"ttd\", ...)",
+            },
+        ),
+        ("learner", "memory_steps" | "memory_discount" | "memory_lambda") if !kind(&[LearnerKind::Memory]) => (
+            format!("learner \"{}\" remembers no steps", learner.kind.word()),
+            "take it out, or write learner(#{ kind: \"memory\" })",
+        ),
         ("learner", "window") if kind(&[LearnerKind::Q, LearnerKind::SarsaLambda]) => (
             format!("learner \"{}\" has no window", learner.kind.word()),
             "take it out, or write learner(\"ttd\", ...)",

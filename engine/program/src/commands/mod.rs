@@ -19,6 +19,7 @@ pub(crate) mod runs;
 pub(crate) mod sources;
 mod stop;
 pub(crate) mod test;
+mod value_chain;
 mod verify;
 pub(crate) mod watch;
 mod words;

@@ -106,7 +106,7 @@ pub(crate) fn run(arguments: &RescoreArguments, console: &mut Console) -> std::r
         steps_changed: rescored.steps_changed,
         new_recoveries: rescored.new_recoveries,
         old_recoveries: rescored.old_recoveries,
-        states_visited: rescored.policy_before.rows().iter().flatten().count(),
+        states_visited: rescored.policy_before.states_met(),
         states_changed: states_changed.collect::<Result<_>>()?,
     };
     let default = arguments.run.join(format!("rescore-{}", new.behaviour.name()));

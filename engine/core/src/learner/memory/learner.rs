@@ -77,6 +77,12 @@ impl MemoryLearner {
         }
     }
 
+    /// The greatest spread of returns so far: first values and temperatures are told in it.
+    #[must_use]
+    pub fn unit(&self) -> f64 {
+        self.scale.unit
+    }
+
     /// The row of a state. One that was never met gets a row, and its mirror image too, from what is known of its parts.
     fn row_of(&mut self, state: usize) -> usize {
         if let Some(row) = self.met.row(state) {
