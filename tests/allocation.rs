@@ -70,6 +70,16 @@ fn a_world_with_several_bodies_that_run_into_one_another_allocates_nothing() {
 }
 
 #[test]
+fn what_is_remembered_is_allocated_before_the_first_step_and_with_each_new_state() {
+    let behaviour = Behaviour::load(&root().join("scripts/wall.rhai")).unwrap();
+    let overrides = Overrides { set: vec!["learner.kind=memory".to_owned()], ..Overrides::default() };
+    let plan = Plan::new(Arc::new(behaviour), &overrides).unwrap();
+    let [few, many] = [1_000, 5_000].map(|steps| allocations(&plan, steps));
+    // Of the later states each needs room in some 20 lists, which grow by doubling.
+    assert!(many.saturating_sub(few) < 200, "{few} and {many}");
+}
+
+#[test]
 fn more_steps_allocate_nothing_more() {
     for script in ["wall", "corridor", "platform", "object"] {
         let behaviour = Behaviour::load(&root().join(format!("scripts/{script}.rhai"))).unwrap();

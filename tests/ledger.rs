@@ -140,7 +140,13 @@ fn a_ledger_says_where_two_runs_part() {
 
 #[test]
 fn a_learner_led_along_its_own_steps_learns_its_own_table() {
-    for (script, set) in [("wall", ""), ("corridor-speed", "learner.kind=q"), ("platform", "learner.replay=3")] {
+    for (script, set) in [
+        ("wall", ""),
+        ("corridor-speed", "learner.kind=q"),
+        ("platform", "learner.replay=3"),
+        ("wall", "learner.kind=memory"),
+        ("object", "learner.kind=memory"),
+    ] {
         let mut plan = plan(script, 800);
         if !set.is_empty() {
             plan = plan.with_changes(&Overrides { set: vec![set.to_owned()], ..Overrides::default() }).unwrap();

@@ -349,3 +349,46 @@ fn the_chain_ends_in_the_value_and_names_the_steps_behind_it() {
     // State 2 is met at 2, 6, 10, ..., with action 1 at 10, 22, ..., 94.
     assert_eq!(chain.tries.iter().map(|past| past.step).collect::<Vec<_>>(), [94, 82, 70, 58, 46, 34, 22, 10]);
 }
+
+#[test]
+fn what_is_paid_in_advance_leaves_the_return_of_an_attempt_as_it_was() {
+    // From begin to end of an attempt, the discounted rewards as learned add up to those of the script: what is best stays best.
+    let mut learner = learner(grid());
+    let (built, script) = ([0.0, -0.25, -0.5, -0.9], [0.0, 0.1, 0.0, -1.0]);
+    for (index, reward) in script.into_iter().enumerate() {
+        let next_potential = built.get(index + 1).copied().unwrap_or(-1.0);
+        let ending = (index == 3).then_some(Ending::Failure);
+        learner.learn(&Transition {
+            potential: built[index],
+            next_potential,
+            ending,
+            ..step(index, 0, reward, index + 1)
+        });
+    }
+    let discounted = |rewards: &[f64]| rewards.iter().rev().fold(0.0, |sum, reward| reward + 0.98 * sum);
+    let learned: Vec<f64> = (0..4).rev().map(|back| learner.past.back(back).reward).collect();
+    assert!((discounted(&learned) - discounted(&script)).abs() < 1e-12, "{learned:?}");
+}
+
+#[test]
+fn sums_that_are_kept_are_those_of_the_steps_that_are_remembered() {
+    // Long enough that old steps are renewed block by block, and the oldest are forgotten.
+    let mut learner = MemoryLearner::new(&LearnerSettings { memory_steps: 2_000, ..settings() }, task(grid()));
+    let mut state = 0;
+    for index in 0..7_000_usize {
+        let (action, _) = learner.choose(state, Allowed::ALL);
+        let next = (state * 5 + action * 7 + index % 3) % 64;
+        let ending = (next % 9 == 4).then_some(Ending::Failure);
+        let reward = if ending.is_some() { -1.0 } else { 0.0 };
+        learner.learn(&Transition { ending, ..step(state, action, reward, next) });
+        state = next;
+    }
+    let mut again = super::returns::ReturnSums::new(3);
+    (0..learner.visits.len()).for_each(|_| again.meet());
+    learner.past.iter().for_each(|step| again.count(step, None, 1.0));
+    let near = |kept: &[f64], anew: &[f64]| {
+        kept.iter().zip(anew).all(|(one, other)| (one - other).abs() < 1e-9 * again.totals.weight)
+    };
+    assert!(near(&learner.sums.sums, &again.sums) && near(&learner.sums.tries, &again.tries));
+    assert!((learner.sums.totals.weight / again.totals.weight - 1.0).abs() < 1e-9);
+}
