@@ -104,3 +104,20 @@ fn a_reward_is_swapped_in_a_robot_that_remembers() {
         assert!(learning.finish().policy.states_met() > 0);
     }
 }
+
+#[test]
+fn only_what_is_met_has_rows_where_no_table_could_hold_all_states() {
+    // Two grids of 3,125 states each: 9,765,625 together.
+    let fine = VIEWS.replace("rows: 3, columns: 3", "rows: 4, columns: 5");
+    let (plan, never) = (plan(&fine), AtomicBool::new(false));
+    let learned = learn(&plan, 3, &never, &|_| ()).unwrap();
+    assert_eq!(learned.policy.states(), 9_765_625);
+    assert!(learned.policy.rows().count() < 600);
+    let text = policy_to_toml(&plan, &learned.policy, None).unwrap();
+    assert_eq!(policy_from_toml(&SourceText::new("policy.toml", text), &plan).unwrap(), learned.policy);
+    let table = fine.replace("memory", "ttd");
+    let source = SourceText::new(root().join("scripts/own.rhai"), table);
+    let error = Plan::new(Arc::new(Behaviour::parse("own", source).unwrap()), &Overrides::default()).err().unwrap();
+    assert!(error.message.contains("make more than 524288 states"), "{}", error.message);
+    assert!(error.help.unwrap().contains("learner(#{ kind: \"memory\" })"));
+}

@@ -6,6 +6,7 @@
 //! one-step Q-learning, for both rewards, because traces credit what a policy did, and repeated over steps that no policy
 //! answers for any more they diverge: 30 passes of the paper's learner over a run of the wall ended at values of 1e12.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::legs::first_fixed_difference;
@@ -69,15 +70,15 @@ pub struct Rescored {
     pub policy_before: Policy,
     /// What the new reward teaches.
     pub policy_after: Policy,
-    /// By state, then by action: how often the recorded run did it.
-    tries: Vec<u64>,
+    /// By state and action: how often the recorded run did it.
+    tries: BTreeMap<(usize, usize), u64>,
 }
 
 impl Rescored {
     /// How often the recorded run took an action in a state.
     #[must_use]
     pub fn tries(&self, state: usize, action: usize) -> u64 {
-        self.tries.get(state * self.policy_before.actions() + action).copied().unwrap_or(0)
+        self.tries.get(&(state, action)).copied().unwrap_or(0)
     }
 
     /// How often the recorded run chose in a state.
@@ -91,10 +92,11 @@ impl Rescored {
     pub fn changed_states(&self) -> Vec<usize> {
         let best = |policy: &Policy, state| policy.best(state).map(|(action, _)| action);
         let met = |state: &usize| self.policy_before.is_met(*state) || self.policy_after.is_met(*state);
-        let states = (0..self.policy_before.rows().len()).filter(met);
+        let states = self.policy_before.rows().chain(self.policy_after.rows()).map(|(state, _)| state).filter(met);
         let mut changed: Vec<usize> =
             states.filter(|state| best(&self.policy_before, *state) != best(&self.policy_after, *state)).collect();
         changed.sort_by_key(|state| (std::cmp::Reverse(self.visits(*state)), *state));
+        changed.dedup();
         changed
     }
 }
@@ -178,7 +180,7 @@ pub fn rescore(plan: &Plan, new: &Plan, seed: u64, ledger: &Ledger, passes: u64)
         old_recoveries: count(|(old, new)| old.then.is_some() && new.then.is_none()),
         policy_before: learn_along(plan, seed, ledger, &before, passes)?,
         policy_after: learn_along(new, seed, ledger, &after, passes)?,
-        tries: tries(plan, ledger)?,
+        tries: tries(ledger),
     })
 }
 
@@ -229,13 +231,10 @@ fn learn_along(plan: &Plan, seed: u64, ledger: &Ledger, judged: &[Judged], passe
     Ok(learner.policy())
 }
 
-fn tries(plan: &Plan, ledger: &Ledger) -> Result<Vec<u64>> {
-    let actions = plan.settings.actions.len();
-    let mut tries = vec![0; plan.state_map()?.states() * actions];
+fn tries(ledger: &Ledger) -> BTreeMap<(usize, usize), u64> {
+    let mut tries = BTreeMap::new();
     for record in ledger.records() {
-        if let Some(count) = tries.get_mut(record.state as usize * actions + usize::from(record.action)) {
-            *count += 1;
-        }
+        *tries.entry((record.state as usize, usize::from(record.action))).or_default() += 1;
     }
-    Ok(tries)
+    tries
 }

@@ -1,5 +1,6 @@
 //! A learned table that learns no more.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::memory::{PooledRow, Pools};
@@ -12,8 +13,10 @@ use crate::settings::LearnerSettings;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Policy {
     actions: usize,
-    /// By state; `None` where nothing was learned about the state itself.
-    rows: Vec<Option<PolicyRow>>,
+    /// How many states there may be.
+    states: usize,
+    /// By state; none where nothing was learned about the state itself.
+    rows: BTreeMap<usize, PolicyRow>,
     /// At which it chooses; that of the settings if it has none of its own.
     temperature: Option<f64>,
     /// What answers for states without a row, if anything does.
@@ -30,10 +33,18 @@ pub struct PolicyRow {
 }
 
 impl Policy {
-    /// A policy from its rows, by state.
+    /// A policy from its rows, by state; `None` where nothing was learned.
     #[must_use]
     pub fn new(actions: usize, rows: Vec<Option<PolicyRow>>) -> Self {
-        Self { actions, rows, temperature: None, pools: None }
+        let states = rows.len();
+        let rows = rows.into_iter().enumerate().filter_map(|(state, row)| Some((state, row?)));
+        Self::of_states(actions, states, rows.collect())
+    }
+
+    /// A policy over `states` states, with rows of some of them.
+    #[must_use]
+    pub const fn of_states(actions: usize, states: usize, rows: BTreeMap<usize, PolicyRow>) -> Self {
+        Self { actions, states, rows, temperature: None, pools: None }
     }
 
     /// It chooses at a temperature of its own.
@@ -67,22 +78,33 @@ impl Policy {
         Self::new(table.actions(), table.visits().iter().enumerate().map(row).collect())
     }
 
-    /// What was learned about each state.
+    /// What was learned about states, in their order.
+    pub fn rows(&self) -> impl Iterator<Item = (usize, &PolicyRow)> + Clone {
+        self.rows.iter().map(|(state, row)| (*state, row))
+    }
+
+    /// What was learned about a state.
     #[must_use]
-    pub fn rows(&self) -> &[Option<PolicyRow>] {
-        &self.rows
+    pub fn row(&self, state: usize) -> Option<&PolicyRow> {
+        self.rows.get(&state)
+    }
+
+    /// How many states there may be.
+    #[must_use]
+    pub const fn states(&self) -> usize {
+        self.states
     }
 
     /// How many states were visited.
     #[must_use]
     pub fn states_met(&self) -> usize {
-        self.rows.iter().flatten().filter(|row| row.visits > 0).count()
+        self.rows.values().filter(|row| row.visits > 0).count()
     }
 
     /// Whether a state was visited.
     #[must_use]
     pub fn is_met(&self, state: usize) -> bool {
-        self.rows.get(state).and_then(Option::as_ref).is_some_and(|row| row.visits > 0)
+        self.row(state).is_some_and(|row| row.visits > 0)
     }
 
     /// How many actions there are.
@@ -94,14 +116,14 @@ impl Policy {
     /// The best action of a state and its value, if the state was ever visited.
     #[must_use]
     pub fn best(&self, state: usize) -> Option<(usize, f64)> {
-        self.rows.get(state)?.as_ref().map(|row| super::q_table::best_of(&row.values))
+        self.row(state).map(|row| super::q_table::best_of(&row.values))
     }
 
     /// The values of a state's actions, in `room` where the state has no row of its own; nothing in a state of which it knows
     /// nothing.
     fn values<'a>(&'a self, state: usize, room: &'a mut PooledRow) -> Option<&'a [f64]> {
-        match (self.rows.get(state), &self.pools) {
-            (Some(Some(row)), _) => Some(&row.values),
+        match (self.row(state), &self.pools) {
+            (Some(row), _) => Some(&row.values),
             (_, Some(pools)) => {
                 pools.answer(state, room);
                 Some(&room.values)

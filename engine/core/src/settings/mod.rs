@@ -162,6 +162,17 @@ pub struct LearnerSettings {
     pub memory_lambda: f64,
 }
 
+impl LearnerSettings {
+    /// How much the next value counts for the learner that is set (gamma).
+    #[must_use]
+    pub const fn gamma(&self) -> f64 {
+        match self.kind {
+            LearnerKind::Memory => self.memory_discount,
+            _ => self.discount,
+        }
+    }
+}
+
 /// What `then recover` does.
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs, reason = "every field is documented in the table of settings")]

@@ -12,7 +12,7 @@ mod patch;
 use crate::sensors::observation::Image;
 
 pub use composed::{ComposedMap, DigitKind, StatePart};
-pub use grid::{Grid, GridError, MAX_STATES};
+pub use grid::{Grid, GridError, MAX_POOLED_STATES, MAX_STATES};
 pub use grid_map::GridMap;
 pub use line::{FloorLine, floor_line};
 pub use patch::{Patch, PatchFinder};

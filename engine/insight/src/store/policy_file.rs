@@ -1,5 +1,6 @@
 //! `policy.toml`: a learned table with the filter, grid and actions that it belongs to.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -14,7 +15,7 @@ use engine::filter::Catalogue;
 use engine::geometry::Twist;
 use engine::learner::{Policy, PolicyRow, PooledSums, Pools};
 use engine::settings::{FilterSettings, GridSettings, Settings, ViewSettings};
-use engine::state::{GridMap, MAX_STATES, StateMap};
+use engine::state::{GridMap, MAX_POOLED_STATES, MAX_STATES, StateMap};
 
 /// The name of the file in a run's folder.
 pub const POLICY_FILE: &str = "policy.toml";
@@ -124,8 +125,7 @@ fn text_of(
     } else {
         (None, Vec::new(), settings.views().map(|view| ViewEntry::new(view, filters)).collect())
     };
-    let state = policy.rows().iter().enumerate().filter_map(|(index, row)| {
-        let row = row.as_ref()?;
+    let state = policy.rows().filter_map(|(index, row)| {
         let best = policy.best(index)?.0;
         Some(StateEntry { index, visits: row.visits, best, values: row.values.clone() })
     });
@@ -142,7 +142,7 @@ fn text_of(
         columns: grid.as_ref().map(|grid| grid.columns),
         occupied: grid.as_ref().map(|grid| grid.occupied),
         fill: grid.as_ref().map(|grid| grid.fill),
-        states: policy.rows().len(),
+        states: policy.states(),
         temperature: policy.temperature(),
         pools: policy.pools().map(Pools::to_sums),
         actions: settings.actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
@@ -176,21 +176,22 @@ impl StoredPolicy {
         else {
             return Err(unfit(source, "has neither a grid nor views", "learn the behaviour again"));
         };
-        // A state of the largest grid takes 8 bytes even if it was never met: the number is checked before it is believed.
-        if file.states > MAX_STATES || file.actions.is_empty() {
+        let most = if format.format == FORMAT_OF_MEMORY { MAX_POOLED_STATES } else { MAX_STATES };
+        if file.states > most || file.actions.is_empty() {
             return Err(unfit(source, "has no actions or too many states", "learn the behaviour again"));
         }
-        let mut rows = vec![None; file.states];
+        let mut rows = BTreeMap::new();
         for StateEntry { index, visits, values, .. } in file.state {
             let finite = values.iter().all(|value| value.is_finite());
-            if index >= file.states || values.len() != file.actions.len() || !finite || rows[index].is_some() {
+            let fits = index < file.states && values.len() == file.actions.len() && finite;
+            if !fits || rows.insert(index, PolicyRow { visits, values }).is_some() {
                 let message = format!("has a damaged entry for state {index}");
                 return Err(unfit(source, &message, "learn the behaviour again"));
             }
-            rows[index] = Some(PolicyRow { visits, values });
         }
-        let policy = remembering(Policy::new(file.actions.len(), rows), file.temperature, file.pools)
-            .ok_or_else(|| unfit(source, "has damaged sums or no temperature", "learn the behaviour again"))?;
+        let policy =
+            remembering(Policy::of_states(file.actions.len(), file.states, rows), file.temperature, file.pools)
+                .ok_or_else(|| unfit(source, "has damaged sums or no temperature", "learn the behaviour again"))?;
         let entries = file.view.first().map_or(file.filter, |view| view.filter.clone());
         Ok(Self {
             behaviour: file.behaviour,
@@ -231,8 +232,8 @@ impl StoredPolicy {
         if let Some(differing) = self.views.iter().zip(settings.views()).find_map(differs) {
             return Err(differing);
         }
-        if self.policy.rows().len() != states {
-            return Err([format!("{} states", self.policy.rows().len()), format!("{states} states")]);
+        if self.policy.states() != states {
+            return Err([format!("{} states", self.policy.states()), format!("{states} states")]);
         }
         if self.actions.len() != settings.actions.len() {
             return Err([format!("{} actions", self.actions.len()), format!("{} actions", settings.actions.len())]);

@@ -127,7 +127,7 @@ fn entry(plan: &Plan, rescored: &Rescored, state: usize) -> Result<Option<Rescor
     let (Some(before), Some(after)) = (choice(&rescored.policy_before), choice(&rescored.policy_after)) else {
         return Ok(None);
     };
-    let row = rescored.policy_after.rows().get(state).and_then(Option::as_ref);
+    let row = rescored.policy_after.row(state);
     let gain = row.map_or(0.0, |row| after.value - row.values[before.action]);
     let cells = plan.state_map()?.describe(state).cells.map_or_else(Vec::new, |cells| cells.filled);
     Ok(Some(RescoredState { state, cells, visits: rescored.visits(state), before, after, gain }))

@@ -1,5 +1,6 @@
 //! The learner itself: it chooses, remembers, and every few steps values all that it remembers anew.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::ageing::weight_at;
@@ -292,20 +293,18 @@ impl Learner for MemoryLearner {
 
     fn policy(&self) -> Policy {
         let actions = self.table.actions;
-        let mut rows = vec![None; self.states];
-        for (row, state) in self.met.states().iter().enumerate() {
-            rows[*state] = Some(self.frozen_row(row));
-        }
-        let policy = |rows| Policy::new(actions, rows).at_temperature(self.scale.temperature(COLD));
-        if self.states > MOST_ROWS {
-            return policy(rows).answering(self.pools.frozen().map(Arc::new));
-        }
+        let met = self.met.states().iter().enumerate();
+        let mut rows: BTreeMap<usize, PolicyRow> = met.map(|(row, state)| (*state, self.frozen_row(row))).collect();
+        let pools = if self.states > MOST_ROWS { self.pools.frozen().map(Arc::new) } else { None };
         let mut room = PooledRow::default();
-        for (state, row) in rows.iter_mut().enumerate().filter(|(_, row)| row.is_none()) {
-            self.pools.answer(state, &mut room);
-            *row = Some(PolicyRow { visits: 0, values: room.values.clone() });
+        for state in 0..if pools.is_none() { self.states } else { 0 } {
+            rows.entry(state).or_insert_with(|| {
+                self.pools.answer(state, &mut room);
+                PolicyRow { visits: 0, values: room.values.clone() }
+            });
         }
-        policy(rows)
+        let policy = Policy::of_states(actions, self.states, rows);
+        policy.at_temperature(self.scale.temperature(COLD)).answering(pools)
     }
 
     fn numbers(&self, each: &mut dyn FnMut(f64)) {

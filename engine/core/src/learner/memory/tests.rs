@@ -106,8 +106,8 @@ fn compare(settings: &LearnerSettings, digits: &[Digit], steps: &[(Transition, b
         }
     }
     let policy = quick.policy();
-    for state in 0..policy.rows().len() {
-        let row = policy.rows()[state].as_ref().unwrap();
+    assert_eq!(policy.rows().count(), policy.states());
+    for (state, row) in policy.rows() {
         for (action, value) in row.values.iter().enumerate() {
             let wanted = plain.frozen(state, action);
             prop_assert!(near(*value, wanted), "frozen, state {state}: {value}, by definition {wanted}");
@@ -265,7 +265,7 @@ fn what_is_learned_on_the_left_is_known_on_the_right() {
         learner.learn(&Transition { ending: Some(Ending::Failure), ..step(0, 0, -1.0, 2) });
     }
     let policy = learner.policy();
-    let of = |state: usize| policy.rows()[state].clone().unwrap();
+    let of = |state: usize| policy.row(state).cloned().unwrap();
     let mirrored: Vec<f64> = of(0).values.into_iter().rev().collect();
     assert!(of(1).values.iter().zip(&mirrored).all(|(one, other)| (one - other).abs() < 1e-12));
     assert_eq!((of(1).visits, of(2).visits), (1, 0));
@@ -304,7 +304,7 @@ fn a_state_that_was_never_met_is_answered_for_by_its_columns() {
     }
     // State 16 shares its two left columns with state 0, state 42 shares nothing with it.
     let policy = learner.policy();
-    let value = |state: usize| policy.rows()[state].clone().unwrap().values[1];
+    let value = |state: usize| policy.row(state).cloned().unwrap().values[1];
     assert!(value(16) < value(42));
     assert_eq!((policy.states_met(), value(42)), (0, learner.pools.first_value()));
 }
@@ -332,7 +332,7 @@ fn over_many_states_the_sums_of_their_parts_answer_as_the_learner_would() {
         "{:?} {wanted:?}",
         room.values
     );
-    assert!(policy.rows()[39_999].is_none() && wanted[0] != wanted[1]);
+    assert!(policy.row(39_999).is_none() && wanted[0] != wanted[1]);
 }
 
 #[test]
