@@ -36,9 +36,11 @@ impl Policy {
     /// A policy from its rows, by state; `None` where nothing was learned.
     #[must_use]
     pub fn new(actions: usize, rows: Vec<Option<PolicyRow>>) -> Self {
-        let states = rows.len();
-        let rows = rows.into_iter().enumerate().filter_map(|(state, row)| Some((state, row?)));
-        Self::of_states(actions, states, rows.collect())
+        let mut known = Self::of_states(actions, rows.len(), BTreeMap::new());
+        for (state, row) in rows.into_iter().enumerate() {
+            known.rows.extend(row.map(|row| (state, row)));
+        }
+        known
     }
 
     /// A policy over `states` states, with rows of some of them.
