@@ -8,7 +8,7 @@ use crate::settings::{LearnerKind, LearnerSettings};
 /// Every learner that ships.
 pub enum ShippedLearner {
     /// One that keeps a table.
-    Table(TableLearner),
+    Table(Box<TableLearner>),
     /// One that remembers its steps.
     Memory(Box<MemoryLearner>),
 }
@@ -18,7 +18,7 @@ pub enum ShippedLearner {
 pub fn shipped_learner(settings: &LearnerSettings, task: Task) -> ShippedLearner {
     match settings.kind {
         LearnerKind::Memory => ShippedLearner::Memory(Box::new(MemoryLearner::new(settings, task))),
-        _ => ShippedLearner::Table(TableLearner::new(settings, task)),
+        _ => ShippedLearner::Table(Box::new(TableLearner::new(settings, task))),
     }
 }
 
@@ -34,14 +34,14 @@ impl ShippedLearner {
 
     fn own(&self) -> &dyn Learner {
         match self {
-            Self::Table(learner) => learner,
+            Self::Table(learner) => &**learner,
             Self::Memory(learner) => &**learner,
         }
     }
 
     fn own_mut(&mut self) -> &mut dyn Learner {
         match self {
-            Self::Table(learner) => learner,
+            Self::Table(learner) => &mut **learner,
             Self::Memory(learner) => &mut **learner,
         }
     }
