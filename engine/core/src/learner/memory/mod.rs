@@ -16,9 +16,9 @@
 //! and Russell 1999): what is best stays best. What is frozen is the mean of the last tables.
 //!
 //! # Why not a model, or a table that is nudged
-//! The states of a small grid are aliased: a Markov model of them believes ways that do not exist. On fresh seeds the same
-//! robot learned the wall in 30 of 30 seeds with 16 punishments in 2,000 steps, against 25 of 30 with 52 by TTD. The
-//! constants below were chosen on other seeds than those.
+//! The states of a small grid are aliased: a Markov model of them believes ways that do not exist. On seeds 7100 to 7129,
+//! which nothing was chosen by, the wall was learned in 30 of 30 seeds with 15 punishments in 2,000 steps and 0.0 failures per
+//! 1,000 steps of the test (worst seed 1.0); by `ttd` in 26 of 30, with 50, and 0.3 (6.2).
 
 mod ageing;
 mod averaged;
