@@ -140,7 +140,13 @@ fn a_ledger_says_where_two_runs_part() {
 
 #[test]
 fn a_learner_led_along_its_own_steps_learns_its_own_table() {
-    for (script, set) in [("wall", ""), ("corridor-speed", "learner.kind=q"), ("platform", "learner.replay=3")] {
+    for (script, set) in [
+        ("wall", ""),
+        ("corridor-speed", "learner.kind=q"),
+        ("platform", "learner.replay=3"),
+        ("wall", "learner.kind=memory"),
+        ("object", "learner.kind=memory"),
+    ] {
         let mut plan = plan(script, 800);
         if !set.is_empty() {
             plan = plan.with_changes(&Overrides { set: vec![set.to_owned()], ..Overrides::default() }).unwrap();
@@ -177,7 +183,7 @@ fn many_passes_stay_within_what_the_rewards_can_add_up_to() {
     let rescored = rescore(&plan, &plan, 1, &ledger, 200).unwrap();
     assert_eq!(rescored.changed_states(), Vec::<usize>::new());
     // Punishments of -1 in every step, discounted by 0.99, come to -100.
-    let values = rescored.policy_after.rows().iter().flatten().flat_map(|row| &row.values);
+    let values = rescored.policy_after.rows().flat_map(|(_, row)| &row.values);
     assert!(values.clone().all(|value| (-100.0..=0.0).contains(value)));
     assert!(values.clone().any(|value| *value < -1.0));
 }

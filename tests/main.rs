@@ -46,6 +46,8 @@ mod kept;
 mod ledger;
 /// Seeded mistakes and what is found in them; scripts that ship; ways to cheat.
 mod lint;
+/// The learner that remembers its steps, from a script to its files and what is told of it.
+mod memory;
 /// All mistakes of a script and of its world at once, in order, each once.
 mod mistakes;
 /// WebAssembly filters that loop, grow, trap, lie or are damaged.

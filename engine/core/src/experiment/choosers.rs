@@ -3,7 +3,7 @@
 use super::{Choice, Chooser, Disagreements, Hand, Step};
 use crate::allowed::Allowed;
 use crate::diagnostic::Result;
-use crate::learner::{Combined, Learner, Policy, Softmax, Transition};
+use crate::learner::{Combined, Learner, Policy, PolicyRoom};
 use crate::random::Random;
 
 /// A learner that learns from every step.
@@ -16,16 +16,7 @@ impl<L: Learner + ?Sized> Chooser for Learns<'_, L> {
     }
 
     fn learn(&mut self, step: &Step) {
-        self.0.learn(&Transition {
-            state: step.state,
-            action: step.action,
-            reward: step.reward,
-            next_state: step.next_state,
-            ending: step.ending(),
-            potential: step.potential,
-            next_potential: step.next_potential,
-            next_allowed: step.next_allowed,
-        });
+        self.0.learn(&step.transition());
     }
 
     fn forget(&mut self) {
@@ -36,23 +27,21 @@ impl<L: Learner + ?Sized> Chooser for Learns<'_, L> {
 /// A policy that learns no more, at the lowest temperature.
 pub struct Frozen<'a> {
     policy: &'a Policy,
-    softmax: Softmax,
+    room: PolicyRoom,
     random: Random,
 }
 
 impl<'a> Frozen<'a> {
-    /// A policy with the softmax that fits it and a stream of its own.
+    /// A policy with room to choose in and a stream of its own.
     #[must_use]
-    pub(super) fn new(policy: &'a Policy, softmax: Softmax, random: Random) -> Self {
-        Self { policy, softmax, random }
+    pub(super) fn new(policy: &'a Policy, room: PolicyRoom, random: Random) -> Self {
+        Self { policy, room, random }
     }
 }
 
 impl Chooser for Frozen<'_> {
     fn choose(&mut self, states: &[usize], allowed: Allowed) -> Result<Choice> {
-        let state = states[0];
-        let action = self.policy.choose(state, allowed, &mut self.softmax, &mut self.random);
-        let explored = self.policy.best_among(state, allowed).is_none_or(|(best, _)| best != action);
+        let (action, explored) = self.policy.choose(states[0], allowed, &mut self.room, &mut self.random);
         Ok(Choice { action, explored })
     }
 }

@@ -272,7 +272,7 @@ impl<R: Robot> Cycle<R> {
             entered: verdict.stage.filter(|entered| *entered != stage),
             contact: self.observation.contact,
             driver: None,
-            hands_over: verdict.then.is_none() && self.co_drivers.drive(),
+            hands_over: verdict.then.is_none() && !hop && self.co_drivers.drive(),
             guarded,
             next_allowed: self.leave.allowed,
             hop,

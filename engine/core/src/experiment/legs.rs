@@ -5,7 +5,7 @@
 
 use super::Plan;
 use crate::learner::Carry;
-use crate::settings::{SETTINGS, Settings};
+use crate::settings::{LearnerKind, SETTINGS, Settings};
 use std::sync::Arc;
 
 /// A part of learning under one script, before the reward was swapped.
@@ -94,8 +94,10 @@ impl Plan {
         let same_world = texts(other) == texts(self);
         let fixed = first_fixed_difference(&other.settings, &self.settings).map(|(what, _)| what);
         let uses = self.behaviour.hands_over() || other.behaviour.hands_over();
+        let remembers = |plan: &Self| plan.settings.learner.kind == LearnerKind::Memory;
         fixed
             .or_else(|| uses.then(|| "the policies that it uses".to_owned()))
+            .or_else(|| (remembers(other) != remembers(self)).then(|| "the way of learning".to_owned()))
             .or_else(|| (!same_world).then(|| "the world".to_owned()))
             .or_else(|| (digests(other) != digests(self)).then(|| "the filters".to_owned()))
     }

@@ -9,8 +9,8 @@ use crate::geometry::Twist;
 use crate::judge::Judge;
 use crate::learner::Mirror;
 use crate::script::{Behaviour, Unread};
-use crate::settings::{PartSettings, Settings, ViewSettings};
-use crate::state::{ComposedMap, DigitKind, Grid, GridMap, MAX_STATES, StateMap, StatePart};
+use crate::settings::{LearnerKind, PartSettings, Settings, ViewSettings};
+use crate::state::{ComposedMap, DigitKind, Grid, GridMap, MAX_POOLED_STATES, MAX_STATES, StateMap, StatePart};
 
 /// A behaviour with its settings and the filters that it may use.
 pub(super) struct Parts<'a> {
@@ -152,16 +152,23 @@ impl Parts<'_> {
             parts.push(StatePart::Digit { name, digit, labels, kind: DigitKind::Stages(stages.clone()) });
         }
         let map = ComposedMap::new(parts);
+        // A table has a row for each; what remembers its steps has rows of those that were met.
+        let pools = self.settings.learner.kind == LearnerKind::Memory;
+        let most = if pools { MAX_POOLED_STATES } else { MAX_STATES };
         match map.count() {
-            Some(count) if count <= MAX_STATES => Ok(Box::new(map)),
-            _ => Err(self.too_many_states(&map)),
+            Some(count) if count <= most => Ok(Box::new(map)),
+            _ => Err(self.too_many_states(&map, most)),
         }
     }
 
-    fn too_many_states(&self, map: &ComposedMap) -> Box<Diagnostic> {
-        let message = format!("{} make more than {MAX_STATES} states", map.factors());
+    fn too_many_states(&self, map: &ComposedMap, most: usize) -> Box<Diagnostic> {
+        let message = format!("{} make more than {most} states", map.factors());
         let place = ["state", "stages"].into_iter().find(|place| self.behaviour.place_of(place).is_some());
-        let help = Some("use fewer parts, smaller grids, fewer edges or fewer stages".to_owned());
+        let fewer = "use fewer parts, smaller grids, fewer edges or fewer stages";
+        let help = Some(match most {
+            MAX_STATES => format!("{fewer}, or learner(#{{ kind: \"memory\" }})"),
+            _ => fewer.to_owned(),
+        });
         self.point(Diagnostic::new("E-GRID", message), place.unwrap_or_default(), "too many states", help)
     }
 
@@ -170,7 +177,9 @@ impl Parts<'_> {
         if !self.settings.learner.mirror {
             return Ok(None);
         }
-        let states = (0..map.states()).map(|state| map.mirrored(state)).collect::<Option<Vec<_>>>();
+        let few = map.states() <= MAX_STATES;
+        let states =
+            few.then(|| (0..map.states()).map(|state| map.mirrored(state)).collect::<Option<Vec<_>>>()).flatten();
         let Some(states) = states else {
             let error = Diagnostic::new("E-MIRROR", "the states of this behaviour have no mirror images");
             let help = Some("leave 'mirror' out".to_owned());

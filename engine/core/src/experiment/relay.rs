@@ -7,7 +7,7 @@
 use super::{Choice, Chooser, Hand, Plan, Step, UsedPolicy};
 use crate::allowed::Allowed;
 use crate::diagnostic::Result;
-use crate::learner::Softmax;
+use crate::learner::PolicyRoom;
 use crate::random::{Random, Stream};
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ pub(super) struct UsedDrivers {
 
 struct UsedDriver {
     used: Arc<UsedPolicy>,
-    softmax: Softmax,
+    room: PolicyRoom,
     motions: Vec<usize>,
 }
 
@@ -29,7 +29,7 @@ impl UsedDrivers {
     /// Those of a plan, in the phase of a run whose simulator has this seed.
     pub(super) fn new(plan: &Plan, seed: u64) -> Self {
         let driver = |used: &Arc<UsedPolicy>| UsedDriver {
-            softmax: used.policy.softmax(&used.plan.settings.learner),
+            room: used.policy.room(&used.plan.settings.learner),
             motions: plan.motions_of(used),
             used: Arc::clone(used),
         };
@@ -67,13 +67,11 @@ impl<C: Chooser> Chooser for Relay<'_, C> {
 
     fn hand_over(&mut self, hand: &Hand) -> Option<Choice> {
         let UsedDrivers { drivers, random, .. } = &mut *self.used;
-        let UsedDriver { used, softmax, motions } = drivers.get_mut(hand.policy)?;
-        let action = match hand.held {
-            Some(held) => held,
-            None => used.policy.choose(hand.state, hand.allowed, softmax, random),
+        let UsedDriver { used, room, motions } = drivers.get_mut(hand.policy)?;
+        let (action, explored) = match hand.held {
+            Some(held) => (held, false),
+            None => used.policy.choose(hand.state, hand.allowed, room, random),
         };
-        let best = used.policy.best_among(hand.state, hand.allowed);
-        let explored = hand.held.is_none() && best.is_none_or(|(best, _)| best != action);
         Some(Choice { action: *motions.get(action)?, explored })
     }
 
@@ -87,10 +85,11 @@ impl<C: Chooser> Chooser for Relay<'_, C> {
                 own.next_potential = step.next_potential;
                 own.next_allowed = step.next_allowed;
                 (own.then, own.to, own.entered) = (step.then, step.to, step.entered.or(own.entered));
+                own.hop = step.hop;
             }
             (Some(_), None) => return,
         }
-        if step.then.is_some() || !step.hands_over {
+        if step.moves() || !step.hands_over {
             self.used.settle(&mut self.own);
         }
     }

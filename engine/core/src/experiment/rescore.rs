@@ -6,6 +6,7 @@
 //! one-step Q-learning, for both rewards, because traces credit what a policy did, and repeated over steps that no policy
 //! answers for any more they diverge: 30 passes of the paper's learner over a run of the wall ended at values of 1e12.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::legs::first_fixed_difference;
@@ -26,6 +27,8 @@ struct Judged {
     then: Option<Then>,
     /// The actions that the script's guards leave at its end.
     next_allowed: Allowed,
+    /// What delayed rules had built up before the step, and after it.
+    potentials: [f64; 2],
     /// The robot was put elsewhere after this step, because the recorded run asked for it.
     moved: bool,
 }
@@ -69,15 +72,15 @@ pub struct Rescored {
     pub policy_before: Policy,
     /// What the new reward teaches.
     pub policy_after: Policy,
-    /// By state, then by action: how often the recorded run did it.
-    tries: Vec<u64>,
+    /// By state and action: how often the recorded run did it.
+    tries: BTreeMap<(usize, usize), u64>,
 }
 
 impl Rescored {
     /// How often the recorded run took an action in a state.
     #[must_use]
     pub fn tries(&self, state: usize, action: usize) -> u64 {
-        self.tries.get(state * self.policy_before.actions() + action).copied().unwrap_or(0)
+        self.tries.get(&(state, action)).copied().unwrap_or(0)
     }
 
     /// How often the recorded run chose in a state.
@@ -90,10 +93,12 @@ impl Rescored {
     #[must_use]
     pub fn changed_states(&self) -> Vec<usize> {
         let best = |policy: &Policy, state| policy.best(state).map(|(action, _)| action);
-        let states = 0..self.policy_before.rows().len();
+        let met = |state: &usize| self.policy_before.is_met(*state) || self.policy_after.is_met(*state);
+        let states = self.policy_before.rows().chain(self.policy_after.rows()).map(|(state, _)| state).filter(met);
         let mut changed: Vec<usize> =
             states.filter(|state| best(&self.policy_before, *state) != best(&self.policy_after, *state)).collect();
         changed.sort_by_key(|state| (std::cmp::Reverse(self.visits(*state)), *state));
+        changed.dedup();
         changed
     }
 }
@@ -141,6 +146,7 @@ pub fn rescore(plan: &Plan, new: &Plan, seed: u64, ledger: &Ledger, passes: u64)
         vec![RuleScore::default(); new.behaviour.rules().len()],
     ];
     let mut judged: [Vec<Judged>; 2] = [Vec::with_capacity(ledger.len()), Vec::with_capacity(ledger.len())];
+    let mut potential = 0.0;
     loop {
         playback.seek(playback.done())?;
         enter_world(&mut judge, &playback)?;
@@ -148,8 +154,10 @@ pub fn rescore(plan: &Plan, new: &Plan, seed: u64, ledger: &Ledger, passes: u64)
         judge.facts_mut().clone_from(playback.cycle().facts());
         let verdict = judge.judge()?;
         let next_allowed = judge.leave().allowed;
+        let potentials = [std::mem::replace(&mut potential, judge.potential()), judge.potential()];
         if step.moves() || verdict.then.is_some() {
             judge.recovered();
+            potential = 0.0;
         }
         for (scores, fired) in scores.iter_mut().zip([playback.cycle().fired(), judge.fired()]) {
             for (score, value) in scores.iter_mut().zip(fired) {
@@ -158,8 +166,10 @@ pub fn rescore(plan: &Plan, new: &Plan, seed: u64, ledger: &Ledger, passes: u64)
             }
         }
         let moved = step.moves();
-        judged[0].push(Judged { reward: step.reward, then: step.then, next_allowed: step.next_allowed, moved });
-        judged[1].push(Judged { reward: verdict.reward, then: verdict.then, next_allowed, moved });
+        let old = [step.potential, step.next_potential];
+        let (then, allowed) = (step.then, step.next_allowed);
+        judged[0].push(Judged { reward: step.reward, then, next_allowed: allowed, potentials: old, moved });
+        judged[1].push(Judged { reward: verdict.reward, then: verdict.then, next_allowed, potentials, moved });
     }
     let [before, after] = judged;
     let pairs = || before.iter().zip(&after);
@@ -174,7 +184,7 @@ pub fn rescore(plan: &Plan, new: &Plan, seed: u64, ledger: &Ledger, passes: u64)
         old_recoveries: count(|(old, new)| old.then.is_some() && new.then.is_none()),
         policy_before: learn_along(plan, seed, ledger, &before, passes)?,
         policy_after: learn_along(new, seed, ledger, &after, passes)?,
-        tries: tries(plan, ledger)?,
+        tries: tries(ledger),
     })
 }
 
@@ -221,8 +231,8 @@ fn learn_along(plan: &Plan, seed: u64, ledger: &Ledger, judged: &[Judged], passe
                 reward: judged.reward,
                 next_state: record.next_state as usize,
                 ending: judged.then.map(|then| then.ending(judged.reward)),
-                potential: 0.0,
-                next_potential: 0.0,
+                potential: judged.potentials[0],
+                next_potential: judged.potentials[1],
                 next_allowed: judged.next_allowed,
             });
             // What follows does not follow from this step if the robot was put elsewhere.
@@ -235,13 +245,10 @@ fn learn_along(plan: &Plan, seed: u64, ledger: &Ledger, judged: &[Judged], passe
     Ok(learner.policy())
 }
 
-fn tries(plan: &Plan, ledger: &Ledger) -> Result<Vec<u64>> {
-    let actions = plan.settings.actions.len();
-    let mut tries = vec![0; plan.state_map()?.states() * actions];
+fn tries(ledger: &Ledger) -> BTreeMap<(usize, usize), u64> {
+    let mut tries = BTreeMap::new();
     for record in ledger.records() {
-        if let Some(count) = tries.get_mut(record.state as usize * actions + usize::from(record.action)) {
-            *count += 1;
-        }
+        *tries.entry((record.state as usize, usize::from(record.action))).or_default() += 1;
     }
-    Ok(tries)
+    tries
 }

@@ -1,6 +1,7 @@
 //! What one step led to.
 
 use crate::allowed::Allowed;
+use crate::learner::Transition;
 use crate::outcome::{Destination, Ending, Then};
 
 /// One step, from the choice of an action to what the script says of it.
@@ -53,5 +54,20 @@ impl Step {
     #[must_use]
     pub fn ending(&self) -> Option<Ending> {
         self.then.map(|then| then.ending(self.reward))
+    }
+
+    /// The step as a learner is told of it.
+    #[must_use]
+    pub fn transition(&self) -> Transition {
+        Transition {
+            state: self.state,
+            action: self.action,
+            reward: self.reward,
+            next_state: self.next_state,
+            ending: self.ending(),
+            potential: self.potential,
+            next_potential: self.next_potential,
+            next_allowed: self.next_allowed,
+        }
     }
 }

@@ -125,7 +125,7 @@ pub fn test_and_watch(
 /// A policy as it chooses in the test of a seed.
 #[must_use]
 pub fn frozen<'a>(plan: &Plan, policy: &'a Policy, seed: u64) -> Frozen<'a> {
-    Frozen::new(policy, policy.softmax(&plan.settings.learner), Random::new(seed, Stream::Test))
+    Frozen::new(policy, policy.room(&plan.settings.learner), Random::new(seed, Stream::Test))
 }
 
 /// Tests whatever chooses, in the simulator.

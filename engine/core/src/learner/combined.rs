@@ -11,6 +11,8 @@
 //! The action is drawn by softmax, equation (3), from Q(a) at the lowest temperature. In a state that it never met a
 //! policy has no values: it does not care, and adds nothing to a sum. Without any values, all actions are equally likely.
 
+use std::collections::BTreeMap;
+
 use super::q_table::best_of;
 use super::{Policy, Softmax, any_of};
 use crate::allowed::Allowed;
@@ -21,8 +23,8 @@ use crate::stats::Sorted;
 /// Two or more policies over the same actions, each with states of its own.
 #[derive(Debug, Clone)]
 pub(crate) struct Combined {
-    /// By policy and state; `None` where the policy never met the state.
-    members: Vec<Vec<Option<MemberRow>>>,
+    /// By policy and state; none where the policy never met the state.
+    members: Vec<BTreeMap<usize, MemberRow>>,
     by_priority: bool,
     softmax: Softmax,
     sum: Vec<f64>,
@@ -64,7 +66,7 @@ impl Combined {
                 let values = if by_priority { values.to_vec() } else { mean_free(values, divisor) };
                 MemberRow { values, best, cares }
             };
-            policy.rows().iter().map(|known| known.as_ref().map(|known| row(&known.values))).collect()
+            policy.rows().map(|(state, known)| (state, row(&known.values))).collect()
         });
         Self {
             members: members.collect(),
@@ -77,7 +79,7 @@ impl Combined {
 
     /// How many states each policy met.
     pub(crate) fn known_states(&self) -> impl Iterator<Item = usize> {
-        self.members.iter().map(|member| member.iter().flatten().count())
+        self.members.iter().map(BTreeMap::len)
     }
 
     /// By policy: its own best action in the last states; `None` where it did not know its state.
@@ -89,7 +91,7 @@ impl Combined {
     /// Decides in the states that the policies perceive, one for each policy, in their order.
     pub(crate) fn choose(&mut self, states: &[usize], allowed: Allowed, random: &mut Random) -> Decision {
         for ((vote, member), state) in self.votes.iter_mut().zip(&self.members).zip(states) {
-            *vote = known(member, *state).map(|row| row.best);
+            *vote = member.get(state).map(|row| row.best);
         }
         if self.by_priority {
             self.choose_by_priority(states, allowed, random)
@@ -99,7 +101,7 @@ impl Combined {
     }
 
     fn choose_by_priority(&mut self, states: &[usize], allowed: Allowed, random: &mut Random) -> Decision {
-        let rows = self.members.iter().zip(states).map(|(member, state)| known(member, *state));
+        let rows = self.members.iter().zip(states).map(|(member, state)| member.get(state));
         let last = self.members.len().saturating_sub(1);
         let caring = rows.enumerate().find(|(index, row)| *index == last || row.is_some_and(|row| row.cares));
         let decider = caring.map(|(index, _)| index);
@@ -114,7 +116,7 @@ impl Combined {
 
     fn choose_by_sum(&mut self, states: &[usize], allowed: Allowed, random: &mut Random) -> Decision {
         self.sum.fill(0.0);
-        for row in self.members.iter().zip(states).filter_map(|(member, state)| known(member, *state)) {
+        for row in self.members.iter().zip(states).filter_map(|(member, state)| member.get(state)) {
             for (sum, value) in self.sum.iter_mut().zip(&row.values) {
                 *sum += value;
             }
@@ -122,10 +124,6 @@ impl Combined {
         let preferred = self.votes.iter().any(Option::is_some).then(|| best_of(&self.sum).0);
         Decision { action: self.softmax.choose(&self.sum, allowed, u64::MAX, random), preferred, decider: None }
     }
-}
-
-fn known(member: &[Option<MemberRow>], state: usize) -> Option<&MemberRow> {
-    member.get(state)?.as_ref()
 }
 
 fn mean(values: &[f64]) -> f64 {
@@ -139,7 +137,7 @@ fn mean_free(values: &[f64], divisor: f64) -> Vec<f64> {
 
 /// Root mean square of the mean-free values of all known states; 1 if they are all equal.
 fn deviation(policy: &Policy) -> f64 {
-    let free: Vec<f64> = policy.rows().iter().flatten().flat_map(|row| mean_free(&row.values, 1.0)).collect();
+    let free: Vec<f64> = policy.rows().flat_map(|(_, row)| mean_free(&row.values, 1.0)).collect();
     let squares: Vec<f64> = free.iter().map(|value| value * value).collect();
     let deviation = mean(&squares).sqrt();
     if deviation > 0.0 { deviation } else { 1.0 }

@@ -38,6 +38,11 @@ impl Mirror {
         self.states[state]
     }
 
+    /// The mirror image of an action.
+    pub(super) fn action(&self, action: usize) -> usize {
+        self.actions[action]
+    }
+
     /// The mirror images of the actions that are allowed.
     fn allowed(&self, allowed: Allowed) -> Allowed {
         if allowed.is_all() {

@@ -39,6 +39,7 @@
 mod backup;
 mod carry;
 mod combined;
+mod memory;
 mod mirror;
 mod policy;
 mod q_table;
@@ -58,12 +59,13 @@ use crate::settings::LearnerSettings;
 
 pub use carry::Carry;
 pub(crate) use combined::{Combined, Decision};
+pub use memory::{ChainLink, MemoryLearner, PastTry, PooledSums, Pools, ValueChain};
 pub use mirror::Mirror;
-pub(crate) use policy::any_of;
 pub use policy::{Policy, PolicyRow};
+pub(crate) use policy::{PolicyRoom, any_of};
 use q_table::QTable;
 pub use shipped::{ShippedLearner, shipped_learner};
-pub(crate) use softmax::Softmax;
+use softmax::Softmax;
 pub use table_learner::TableLearner;
 pub use task::{Task, Transition};
 

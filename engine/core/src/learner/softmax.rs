@@ -26,10 +26,27 @@ impl Softmax {
         }
     }
 
+    /// The same at one temperature, whatever the visits.
+    #[must_use]
+    pub(super) fn at_temperature(self, temperature: f64) -> Self {
+        Self { start: temperature, end: temperature, ..self }
+    }
+
     /// An index into `values`, drawn among those that are allowed with the probabilities of equation (3) in a state that had
     /// `visits` visits.
     pub(super) fn choose(&mut self, values: &[f64], allowed: Allowed, visits: u64, random: &mut Random) -> usize {
         let temperature = temperature(self.start, self.end, self.cooling_visits, visits);
+        self.choose_at(values, allowed, temperature, random)
+    }
+
+    /// The same at a temperature above 0.
+    pub(super) fn choose_at(
+        &mut self,
+        values: &[f64],
+        allowed: Allowed,
+        temperature: f64,
+        random: &mut Random,
+    ) -> usize {
         let total = match allowed.is_all() {
             true => self.weigh(values, temperature),
             false => self.weigh_allowed(values, allowed, temperature),
@@ -76,7 +93,7 @@ impl Softmax {
 
 /// Equation (4): `start * exp(-(visits / cooling_visits) * ln(start / end))`, and `end` from then on.
 #[must_use]
-fn temperature(start: f64, end: f64, cooling_visits: u64, visits: u64) -> f64 {
+pub(super) fn temperature(start: f64, end: f64, cooling_visits: u64, visits: u64) -> f64 {
     if visits >= cooling_visits {
         return end;
     }

@@ -27,7 +27,7 @@ impl Task {
     /// A task over so many plain states.
     #[must_use]
     pub fn plain(states: usize, actions: Vec<Twist>, random: Random) -> Self {
-        Self { digits: vec![Digit { part: 0, values: states }], states, actions, mirror: None, random }
+        Self { digits: vec![Digit { part: 0, column: 0, values: states }], states, actions, mirror: None, random }
     }
 }
 

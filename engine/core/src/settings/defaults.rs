@@ -110,5 +110,8 @@ fn learner() -> LearnerSettings {
         failure_is_terminal: false,
         mirror: false,
         replay: 0,
+        memory_steps: 12_000,
+        memory_discount: 0.98,
+        memory_lambda: 0.85,
     }
 }

@@ -166,6 +166,20 @@ pub struct LearnerSettings {
     pub failure_is_terminal: bool,
     pub mirror: bool,
     pub replay: u64,
+    pub memory_steps: u64,
+    pub memory_discount: f64,
+    pub memory_lambda: f64,
+}
+
+impl LearnerSettings {
+    /// How much the next value counts for the learner that is set (gamma).
+    #[must_use]
+    pub const fn gamma(&self) -> f64 {
+        match self.kind {
+            LearnerKind::Memory => self.memory_discount,
+            _ => self.discount,
+        }
+    }
 }
 
 /// What `then recover` does.

@@ -177,6 +177,9 @@ settings! {
     learner.failure_is_terminal, "", Flag, "Whether nothing is expected after a failure.";
     learner.mirror, "", Flag, "Whether each step is also learned left for right; for symmetric tasks.";
     learner.replay, "passes", Whole(0, 100), "How often the steps before a recovery, 60 at most, are learned again backwards.";
+    learner.memory_steps, "steps", Whole(100, 1_000_000), "Of `memory`: how many of the last steps are remembered.";
+    learner.memory_discount, "share", Number(0.0, 1.0), "Of `memory`: how much the next value counts (gamma).";
+    learner.memory_lambda, "share", Number(0.0, 1.0), "Of `memory`: how much of a return is what followed, the rest what was expected (lambda).";
     recovery.to, "", Choice(RecoverTo::WORDS), "Where recovery puts the robot: on the lap route, at a start, or behind the first mover.";
     recovery.distance_m, "metres", Number(0.0, 100.0), "How far behind the mover, along its route; for `behind` only.";
     recovery.position_m, "metres", Number(0.0, 2.0), "Greatest random shift of that place.";

@@ -55,6 +55,8 @@ words! {
     Q = "q",
     /// Sarsa(lambda) with replacing traces.
     SarsaLambda = "sarsa-lambda",
+    /// The steps are remembered, and valued by what followed them.
+    Memory = "memory",
 }
 
 words! {

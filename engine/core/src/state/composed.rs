@@ -113,7 +113,7 @@ impl StateMap for ComposedMap {
     fn digits(&self) -> Vec<Digit> {
         let digits = self.parts.iter().enumerate().flat_map(|(part, own)| match own {
             StatePart::View { map, .. } => map.digits().into_iter().map(|digit| Digit { part, ..digit }).collect(),
-            StatePart::Digit { labels, .. } => vec![Digit { part, values: labels.len() }],
+            StatePart::Digit { labels, .. } => vec![Digit { part, column: 0, values: labels.len() }],
         });
         digits.collect()
     }

@@ -18,6 +18,8 @@ use dispatch::{Processor, compiled_for_each_processor};
 
 /// The most states that a grid may have.
 pub const MAX_STATES: usize = 1 << 19;
+/// The most states that there may be where only those that are met have rows: as many as a record of a step can tell apart.
+pub const MAX_POOLED_STATES: usize = u32::MAX as usize;
 
 /// Codes masks of one size.
 #[derive(Debug, Clone)]

@@ -47,7 +47,7 @@ impl StateMap for GridMap {
         let (rows, columns) = self.grid.size();
         let heights = rows + 1 + usize::from(self.grid.remembers());
         let (values, count) = if self.settings.fill { (heights, columns) } else { (2, rows * columns) };
-        vec![Digit { part: 0, values }; count]
+        (0..count).map(|digit| Digit { part: 0, column: digit % columns, values }).collect()
     }
 
     fn describe(&self, state: usize) -> Described {

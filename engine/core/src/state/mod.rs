@@ -13,7 +13,7 @@ mod patch;
 use crate::sensors::observation::Image;
 
 pub use composed::{ComposedMap, DigitKind, StatePart};
-pub use grid::{Grid, GridError, MAX_STATES};
+pub use grid::{Grid, GridError, MAX_POOLED_STATES, MAX_STATES};
 pub use grid_map::GridMap;
 pub use line::{FloorLine, floor_line};
 pub use patch::{Patch, PatchFinder};
@@ -38,6 +38,8 @@ pub struct Percept<'a> {
 pub struct Digit {
     /// The part of the state that it belongs to: digits of one part are learned from together.
     pub part: usize,
+    /// The column of a grid that it belongs to, from 0 on the left; 0 for a number that stands alone.
+    pub column: usize,
     /// How many values it has.
     pub values: usize,
 }
@@ -87,7 +89,7 @@ pub struct Cells {
 ///         2
 ///     }
 ///     fn digits(&self) -> Vec<Digit> {
-///         vec![Digit { part: 0, values: 2 }]
+///         vec![Digit { part: 0, column: 0, values: 2 }]
 ///     }
 ///     fn describe(&self, state: usize) -> Described {
 ///         Described { text: ["left", "right"][state].to_owned(), cells: None }

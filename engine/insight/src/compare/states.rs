@@ -118,8 +118,8 @@ impl ComparedState {
 fn votes(side: &Side) -> BTreeMap<usize, Votes> {
     let mut all: BTreeMap<usize, Votes> = BTreeMap::new();
     for policy in side.seeds.iter().filter_map(|seed| seed.policy.as_ref()) {
-        for (state, row) in policy.rows().iter().enumerate() {
-            if let (Some(row), Some((action, _))) = (row, policy.best(state)) {
+        for (state, row) in policy.rows().filter(|(_, row)| row.visits > 0) {
+            if let Some((action, _)) = policy.best(state) {
                 let votes = all.entry(state).or_default();
                 votes.visits += row.visits;
                 *votes.by_action.entry(action).or_default() += 1;

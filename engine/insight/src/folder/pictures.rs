@@ -66,14 +66,13 @@ pub(super) fn draw_frame(folder: &Path, plan: &Plan, tested: &TestRun) -> Result
 fn draw_policy(folder: &Path, plan: &Plan, learned: &Learned) -> Result<()> {
     let (map, (rows, columns)) = (plan.state_map()?, plan.drawn_grid()?);
     let policy_of = &learned.policy;
-    let state = |(state, row): (usize, &Option<PolicyRow>)| {
-        let row = row.as_ref()?;
+    let state = |(state, row): (usize, &PolicyRow)| {
         let (best, value) = policy_of.best(state)?;
         let best = plan.settings.actions[best];
         let cells = map.describe(state).cells.map_or_else(Vec::new, |cells| cells.filled);
         Some(PolicyState { state, cells, visits: row.visits, best, value })
     };
-    let states: Vec<PolicyState> = policy_of.rows().iter().enumerate().filter_map(state).collect();
+    let states: Vec<PolicyState> = policy_of.rows().filter(|(_, row)| row.visits > 0).filter_map(state).collect();
     let title = format!("{}, seed {}: best action of each state", plan.behaviour.name(), learned.seed);
     policy(&PolicyData { title: &title, rows, columns, states: &states })?.write(folder, "policy")
 }

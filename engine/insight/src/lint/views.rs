@@ -2,7 +2,7 @@
 
 use super::Finding;
 use engine::experiment::Plan;
-use engine::settings::ViewSettings;
+use engine::settings::{LearnerKind, ViewSettings};
 
 /// A table of more states than this is hardly ever filled.
 const LARGE: usize = 4096;
@@ -26,9 +26,11 @@ fn large_state(plan: &Plan, findings: &mut Vec<Finding>) {
         return;
     };
     let states = map.states();
-    if plan.settings.has_parts() && states > LARGE {
+    let pools = plan.settings.learner.kind == LearnerKind::Memory;
+    if plan.settings.has_parts() && states > LARGE && !pools {
         let message = format!("there are {states} states: most of them will never be met twice");
-        let help = "use fewer parts, smaller grids, fewer edges or fewer stages; 4096 states are many for a table";
+        let help = "write learner(#{ kind: \"memory\" }), which lets each part stand in for the whole, or use fewer parts, \
+                    smaller grids, fewer edges or fewer stages";
         findings.push(Finding::warning(plan, "W-STATE-LARGE", span, message).say("too fine", help));
     }
 }

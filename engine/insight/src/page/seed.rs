@@ -147,7 +147,7 @@ impl SeedView {
                 .test
                 .zip(data.lines)
                 .map(|(test, lines)| VerdictView::from(&plan.success().verdict(test, lines))),
-            states_met: data.policy.map_or(0, |policy| policy.rows().iter().flatten().count()),
+            states_met: data.policy.map_or(0, |policy| policy.states_met()),
             states: data.policy.map_or(Ok(Vec::new()), |policy| states(plan, policy, brings_steps))?,
             learning: None,
             tested: None,
@@ -194,14 +194,14 @@ fn by_rule(plan: &Plan, tally: &Tally, window: usize) -> Vec<f64> {
 
 fn states(plan: &Plan, policy: &Policy, with_values: bool) -> Result<Vec<StateRow>> {
     let map = plan.state_map()?;
-    let mut met: Vec<(usize, u64)> =
-        policy.rows().iter().enumerate().filter_map(|(state, row)| Some((state, row.as_ref()?.visits))).collect();
+    let visits = policy.rows().map(|(state, row)| (state, row.visits));
+    let mut met: Vec<(usize, u64)> = visits.filter(|(_, visits)| *visits > 0).collect();
     met.sort_by_key(|(state, visits)| (std::cmp::Reverse(*visits), *state));
     met.truncate(MOST_STATES);
     met.sort_unstable();
     let rounded = |value: f64| (value * 1e4).round() / 1e4;
     let rows = met.into_iter().filter_map(|(state, visits)| {
-        let (row, (best, value)) = (policy.rows().get(state)?.as_ref()?, policy.best(state)?);
+        let (row, (best, value)) = (policy.row(state)?, policy.best(state)?);
         let described = map.describe(state);
         let filled = described.cells.map_or_else(Vec::new, |cells| cells.filled);
         let text = if plan.settings.has_parts() { described.text } else { String::new() };

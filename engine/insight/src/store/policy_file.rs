@@ -1,5 +1,8 @@
 //! `policy.toml`: a learned table with the filter, grid and actions that it belongs to.
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use super::filter_entry::{FilterEntry, ViewEntry};
@@ -10,9 +13,9 @@ use engine::digest::Digest;
 use engine::experiment::Plan;
 use engine::filter::Catalogue;
 use engine::geometry::Twist;
-use engine::learner::{Policy, PolicyRow};
+use engine::learner::{Policy, PolicyRow, PooledSums, Pools};
 use engine::settings::{FilterSettings, GridSettings, Settings, ViewSettings};
-use engine::state::{GridMap, MAX_STATES, StateMap};
+use engine::state::{GridMap, MAX_POOLED_STATES, MAX_STATES, StateMap};
 use engine::world::FamilyRange;
 
 /// The name of the file in a run's folder.
@@ -20,6 +23,8 @@ pub const POLICY_FILE: &str = "policy.toml";
 const FORMAT: u32 = 2;
 /// The format of a policy whose states have several parts.
 const FORMAT_OF_PARTS: u32 = 3;
+/// The format of a policy of the learner `memory`.
+const FORMAT_OF_MEMORY: u32 = 4;
 
 #[derive(Deserialize)]
 struct PolicyFormat {
@@ -51,6 +56,9 @@ struct PolicyFile {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     randomise: Vec<String>,
     states: usize,
+    /// At which it chooses, if not at the settings' lowest one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    temperature: Option<f64>,
     /// Forward speed in m/s and turning speed in rad/s.
     actions: Vec<[f64; 2]>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -63,6 +71,9 @@ struct PolicyFile {
     part: Vec<toml::Table>,
     #[serde(default)]
     state: Vec<StateEntry>,
+    /// What answers for states that are not listed, if anything does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pools: Option<PooledSums>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -122,13 +133,16 @@ fn text_of(
     } else {
         (None, Vec::new(), settings.views().map(|view| ViewEntry::new(view, filters)).collect())
     };
-    let state = policy.rows().iter().enumerate().filter_map(|(index, row)| {
-        let row = row.as_ref()?;
+    let state = policy.rows().filter_map(|(index, row)| {
         let best = policy.best(index)?.0;
         Some(StateEntry { index, visits: row.visits, best, values: row.values.clone() })
     });
     let file = PolicyFile {
-        format: if part.is_empty() { FORMAT } else { FORMAT_OF_PARTS },
+        format: match part.is_empty() {
+            _ if policy.temperature().is_some() => FORMAT_OF_MEMORY,
+            true => FORMAT,
+            false => FORMAT_OF_PARTS,
+        },
         part,
         behaviour: behaviour.to_owned(),
         run_sha256: run.map(|run| Digest::of(run.as_bytes()).to_string()),
@@ -139,7 +153,9 @@ fn text_of(
         remember_s: grid.as_ref().map(|grid| grid.remember_s).filter(|seconds| *seconds > 0.0),
         worlds: worlds_of(settings),
         randomise: settings.randomise.iter().map(|varied| format!("{}: {}", varied.key, varied.from.words())).collect(),
-        states: policy.rows().len(),
+        states: policy.states(),
+        temperature: policy.temperature(),
+        pools: policy.pools().map(Pools::to_sums),
         actions: settings.actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
         filter,
         view,
@@ -164,9 +180,9 @@ impl StoredPolicy {
     /// If the file is damaged or of another format.
     pub fn parse(source: &SourceText) -> Result<Self> {
         let format: PolicyFormat = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
-        if ![FORMAT, FORMAT_OF_PARTS].contains(&format.format) {
+        if !(FORMAT..=FORMAT_OF_MEMORY).contains(&format.format) {
             let message =
-                format!("has format {}, this engine reads formats {FORMAT} and {FORMAT_OF_PARTS}", format.format);
+                format!("has format {}, this engine reads formats {FORMAT} to {FORMAT_OF_MEMORY}", format.format);
             return Err(unfit(source, &message, "learn the behaviour again"));
         }
         let file: PolicyFile = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
@@ -180,19 +196,22 @@ impl StoredPolicy {
         else {
             return Err(unfit(source, "has neither a grid nor views", "learn the behaviour again"));
         };
-        // A state of the largest grid takes 8 bytes even if it was never met: the number is checked before it is believed.
-        if file.states > MAX_STATES || file.actions.is_empty() {
+        let most = if format.format == FORMAT_OF_MEMORY { MAX_POOLED_STATES } else { MAX_STATES };
+        if file.states > most || file.actions.is_empty() {
             return Err(unfit(source, "has no actions or too many states", "learn the behaviour again"));
         }
-        let mut rows = vec![None; file.states];
+        let mut rows = BTreeMap::new();
         for StateEntry { index, visits, values, .. } in file.state {
             let finite = values.iter().all(|value| value.is_finite());
-            if index >= file.states || values.len() != file.actions.len() || !finite || rows[index].is_some() {
+            let fits = index < file.states && values.len() == file.actions.len() && finite;
+            if !fits || rows.insert(index, PolicyRow { visits, values }).is_some() {
                 let message = format!("has a damaged entry for state {index}");
                 return Err(unfit(source, &message, "learn the behaviour again"));
             }
-            rows[index] = Some(PolicyRow { visits, values });
         }
+        let policy =
+            remembering(Policy::of_states(file.actions.len(), file.states, rows), file.temperature, file.pools)
+                .ok_or_else(|| unfit(source, "has damaged sums or no temperature", "learn the behaviour again"))?;
         let entries = file.view.first().map_or(file.filter, |view| view.filter.clone());
         Ok(Self {
             behaviour: file.behaviour,
@@ -202,7 +221,7 @@ impl StoredPolicy {
             grid,
             parts: file.part,
             views: file.view.iter().map(ViewEntry::settings).collect(),
-            policy: Policy::new(file.actions.len(), rows),
+            policy,
             actions: file.actions.iter().map(|[linear, angular]| Twist::new(*linear, *angular)).collect(),
         })
     }
@@ -237,8 +256,8 @@ impl StoredPolicy {
         if let Some(differing) = self.views.iter().zip(settings.views()).find_map(differs) {
             return Err(differing);
         }
-        if self.policy.rows().len() != states {
-            return Err([format!("{} states", self.policy.rows().len()), format!("{states} states")]);
+        if self.policy.states() != states {
+            return Err([format!("{} states", self.policy.states()), format!("{states} states")]);
         }
         if self.actions.len() != settings.actions.len() {
             return Err([format!("{} actions", self.actions.len()), format!("{} actions", settings.actions.len())]);
@@ -252,6 +271,17 @@ impl StoredPolicy {
             None => Ok(()),
         }
     }
+}
+
+/// A policy with what only the learner `memory` leaves; nothing if that is damaged.
+fn remembering(policy: Policy, temperature: Option<f64>, pools: Option<PooledSums>) -> Option<Policy> {
+    let Some(temperature) = temperature else { return pools.is_none().then_some(policy) };
+    let pools = match pools {
+        Some(sums) => Some(Arc::new(Pools::from_sums(&sums, policy.actions())?)),
+        None => None,
+    };
+    let finite = temperature.is_finite() && temperature > 0.0;
+    finite.then(|| policy.at_temperature(temperature).answering(pools))
 }
 
 /// The parts of a map's states; none if it has one.
@@ -353,7 +383,7 @@ mod tests {
     fn the_first_format_is_named_and_not_guessed_at() {
         let old = "format = 1\nbehaviour = \"wall\"\nfilters = [\"sobel(threshold: 60)\"]\n";
         let error = StoredPolicy::parse(&SourceText::new("policy.toml", old)).unwrap_err();
-        assert_eq!(error.message, "'policy.toml' has format 1, this engine reads formats 2 and 3");
+        assert_eq!(error.message, "'policy.toml' has format 1, this engine reads formats 2 to 4");
     }
 
     #[test]

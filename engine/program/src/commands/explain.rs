@@ -5,7 +5,8 @@ use std::path::Path;
 
 use engine::diagnostic::{Diagnostic, Result, all_codes, code_page, excerpt, nearest_name, printable};
 use engine::experiment::{
-    FactReasons, GuardReasons, Phase, Plan, Playback, RuleReasons, SeenView, StepReasons, UseReasons, ViewStage,
+    FactReasons, GuardReasons, Phase, Plan, Playback, RuleReasons, SeenView, StepReasons, UseReasons, ValueReasons,
+    ViewStage,
 };
 use engine::robot::Robot;
 use insight::folder::create_folder;
@@ -15,6 +16,7 @@ use insight::words::short;
 use serde::Serialize;
 
 use super::sources::catalogue;
+use super::value_chain::value_chain;
 use super::words::{fact, icon, motion};
 use crate::cli::ExplainArguments;
 use crate::console::{Console, ConsoleError};
@@ -28,6 +30,9 @@ struct StepReport {
     phase: &'static str,
     #[serde(flatten)]
     reasons: StepReasons,
+    /// Why the learner valued the action as it did, of one that remembers its steps.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    value: Option<ValueReasons>,
     /// What the robot saw when it chose, and at the end of the step: camera, filters, grid.
     pictures: [String; 2],
 }
@@ -74,7 +79,9 @@ pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::r
         .write(out, &stems[1])?;
     let pictures = stems.map(|stem| out.join(format!("{stem}.png")).display().to_string());
     let (behaviour, world) = (plan.behaviour.name().to_owned(), plan.worlds.title());
-    let report = StepReport { behaviour, world, seed: *seed, phase: name, reasons, pictures };
+    let (before, choice) = ((phase == Phase::Learning).then_some(step), [reasons.state.index, reasons.action]);
+    let value = ValueReasons::of(plan, *seed, &recorded.log.learning, before, choice)?;
+    let report = StepReport { behaviour, world, seed: *seed, phase: name, reasons, value, pictures };
     console.json(&report)?;
     print(console, playback.plan(), &report)?;
     Ok(0)
@@ -185,6 +192,9 @@ fn print(console: &mut Console, plan: &Plan, report: &StepReport) -> std::result
     }
     for rule in silent {
         console.line(&format!("  \"{}\" (line {}): {}", printable(&rule.name), rule.line, silence(rule)))?;
+    }
+    if let Some(value) = &report.value {
+        value_chain(console, value)?;
     }
     console.line(&format!("\npictures:  {}\n           {}", report.pictures[0], report.pictures[1]))
 }

@@ -226,11 +226,11 @@ fn eyes<'a>(settings: &'a Settings, filters: &Catalogue) -> Vec<(&'a str, Option
 
 /// All steps of training, 1 at least.
 fn all_visits(policy: &Policy) -> u64 {
-    policy.rows().iter().flatten().map(|row| row.visits).sum::<u64>().max(1)
+    policy.rows().map(|(_, row)| row.visits).sum::<u64>().max(1)
 }
 
 fn visits(policy: &Policy, state: usize) -> u64 {
-    policy.rows().get(state).and_then(Option::as_ref).map_or(0, |row| row.visits)
+    policy.row(state).map_or(0, |row| row.visits)
 }
 
 /// Refuses a folder for pictures from which a photograph was taken: it could be overwritten.

@@ -20,6 +20,7 @@ pub(crate) mod sources;
 mod stop;
 pub(crate) mod test;
 pub(crate) mod upgrade;
+mod value_chain;
 mod verify;
 pub(crate) mod watch;
 mod words;

@@ -113,7 +113,7 @@ pub(crate) fn run(arguments: &RescoreArguments, console: &mut Console) -> std::r
         steps_changed: rescored.steps_changed,
         new_recoveries: rescored.new_recoveries,
         old_recoveries: rescored.old_recoveries,
-        states_visited: rescored.policy_before.rows().iter().flatten().count(),
+        states_visited: rescored.policy_before.states_met(),
         states_changed: states_changed.collect::<Result<_>>()?,
     };
     let default = arguments.run.join(format!("rescore-{}", new.behaviour.name()));
@@ -134,7 +134,7 @@ fn entry(plan: &Plan, rescored: &Rescored, state: usize) -> Result<Option<Rescor
     let (Some(before), Some(after)) = (choice(&rescored.policy_before), choice(&rescored.policy_after)) else {
         return Ok(None);
     };
-    let row = rescored.policy_after.rows().get(state).and_then(Option::as_ref);
+    let row = rescored.policy_after.row(state);
     let gain = row.map_or(0.0, |row| after.value - row.values[before.action]);
     let cells = plan.state_map()?.describe(state).cells.map_or_else(Vec::new, |cells| cells.filled);
     Ok(Some(RescoredState { state, cells, visits: rescored.visits(state), before, after, gain }))

@@ -98,8 +98,8 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
         "W-STATE-LARGE",
         Kind::Input,
         "A state of several parts has more than 4096 values, and a table has a row for each.\n\
-         Most of them are met once or never, and nothing is learned of them. Take a part out, make a grid smaller, or tell a \
-         value apart by fewer ranges.",
+         Most of them are met once or never, and nothing is learned of them. Let the learner memory pool them, take a part \
+         out, make a grid smaller, or tell a value apart by fewer ranges.",
     ),
     (
         "W-SUCCESS-IDLE",
