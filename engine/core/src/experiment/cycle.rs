@@ -245,18 +245,19 @@ impl<R: Robot> Cycle<R> {
         let stage = self.judge.stage();
         let verdict = self.judge.judge().map_err(|error| at_step(error, index))?;
         let guarded = !self.leave.allowed.is_all();
+        let hop = self.since_recovery >= self.stay_steps && verdict.then.is_none();
+        let moves = hop || verdict.then.is_some();
         if self.judge.remembers() {
             self.compose();
             self.leave = self.judge.leave();
-            // Where the attempt ends, the uses are asked again when the robot has been put somewhere.
-            if verdict.then.is_none() {
+            // Where the robot is put elsewhere, the uses are asked again there.
+            if !moves {
                 let asked = self.co_drivers.ask(self.judge.driver(), &self.observation, Some(action));
                 asked.map_err(|error| at_step(error, index))?;
             }
         }
         self.steps += 1;
         self.potential = self.judge.potential();
-        let hop = self.since_recovery >= self.stay_steps && verdict.then.is_none();
         self.ended = self.ended(&verdict, hop);
         Ok(Step {
             index,
@@ -272,7 +273,7 @@ impl<R: Robot> Cycle<R> {
             entered: verdict.stage.filter(|entered| *entered != stage),
             contact: self.observation.contact,
             driver: None,
-            hands_over: verdict.then.is_none() && !hop && self.co_drivers.drive(),
+            hands_over: !moves && self.co_drivers.drive(),
             guarded,
             next_allowed: self.leave.allowed,
             hop,
