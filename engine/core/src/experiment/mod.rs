@@ -31,6 +31,7 @@ mod seed_run;
 mod seeds;
 mod sight;
 mod snapshot;
+mod spells;
 mod staged;
 mod step;
 mod summary;
@@ -58,7 +59,7 @@ pub use reasons::{FactReasons, GuardReasons, PartReasons, RuleReasons, StateCell
 pub use recorded_movers::RecordedMovers;
 pub use rescore::{Rescored, RuleChange, RuleScore, plan_with_rules_of, rescore};
 pub use run_log::{CHUNK_STEPS, DIGEST_BYTES, RunLog, chained};
-pub use seed_run::{SeedRun, run_seed};
+pub use seed_run::{SeedRun, run_only_seed, run_seed};
 pub use seeds::in_parallel;
 pub use sight::Sight;
 pub use snapshot::{SeenView, Snapshot};

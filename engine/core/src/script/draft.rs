@@ -17,7 +17,8 @@ use super::syntax::{Forms, written_rules};
 use super::tree::{Tree, tree};
 use super::unread::Unread;
 use super::{
-    guards, is_key, measures, memory, names, parts, rehearsal, state_parts, stops, success, syntax, top_level, types,
+    guards, is_key, known, measures, memory, names, parts, rehearsal, state_parts, stops, success, syntax, top_level,
+    types,
 };
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, printable};
 use crate::judge::Look;
@@ -107,6 +108,8 @@ impl Draft {
         let declared = Declared::register(&mut engine, &tree, values);
         let constants = top_level::run(&engine, code, &tree, &log, &mut spoilt, mistakes)?;
         let params = declared.finish(code, values, mistakes);
+        // A variable whose statement a mistake spoils has no value.
+        known::check_known(code, &tree.ast, &constants, mistakes);
         spoilt.spread(mistakes);
         let calls = spoilt.setup_calls(mistakes);
         let SetUp { settings, places, mut unread, bins, body } = setup::finish(&log, code, &tree.ast, files, mistakes);

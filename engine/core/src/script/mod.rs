@@ -14,6 +14,7 @@ mod draft;
 mod fact_names;
 mod guards;
 mod is_key;
+mod known;
 mod measurable;
 mod measures;
 mod memory;

@@ -117,7 +117,8 @@ impl Writer {
         (facts.linear_m_per_s, facts.angular_rad_per_s) = (unit() * 2.0 - 1.0, unit() - 0.5);
         (facts.contact, facts.fallen) = (unit() < 0.5, unit() < 0.5);
         (facts.state, facts.action) = ((unit() * 64.0) as usize, (unit() * 14.0) as usize);
-        (facts.step, facts.since_recovery) = ((unit() * 1000.0) as u64, (unit() * 5.0) as u64);
+        // Not 0: to the interpreter, a number without end is not above any.
+        (facts.step, facts.since_recovery) = (1 + (unit() * 1000.0) as u64, 1 + (unit() * 5.0) as u64);
     }
 }
 
