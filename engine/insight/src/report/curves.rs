@@ -107,7 +107,7 @@ fn dashed(line: &[Spot], dashes: &[f64]) -> Vec<Vec<Spot>> {
     let (mut cut, mut dash) = (Vec::new(), line.first().copied().into_iter().collect::<Vec<_>>());
     for ends in line.windows(2) {
         let [from, to] = [ends[0], ends[1]].map(|(x, y)| (f64::from(x), f64::from(y)));
-        let length = (to.0 - from.0).hypot(to.1 - from.1);
+        let length = libm::hypot(to.0 - from.0, to.1 - from.1);
         let at = |way: f64| {
             let share = way / length;
             ((from.0 + share * (to.0 - from.0)).round() as i32, (from.1 + share * (to.1 - from.1)).round() as i32)
