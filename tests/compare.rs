@@ -32,6 +32,10 @@ fn a_comparison_tells_figures_changes_and_states() {
     );
     assert!(told["states"][0]["both_met"].as_u64().unwrap() > 0);
     let page = bench.read("c/compare.html");
+    for words in ["<td>1 to 3</td>", "half of the seeds lie in it", "may be those of different seeds"] {
+        assert!(page.contains(words), "{words}");
+    }
+    assert!(!page.contains("The runs have different seeds"));
     assert!(page.contains("<svg") && page.contains("camera.tilt_deg") && page.contains("0.35"));
     let again = bench.engine(&["compare", "a", "b", "--json", "--out", "d"]);
     assert_eq!((again.stdout, bench.read("d/compare.html")), (output.stdout, page), "the same runs, the same page");
@@ -45,6 +49,20 @@ fn a_run_beside_itself_differs_in_nothing() {
     assert_eq!(told["states"][0]["differ"], 0);
     for figure in told["figures"].as_array().unwrap() {
         assert_eq!(figure["sides"][1]["chance"], 1.0, "{figure}");
+    }
+}
+
+#[test]
+fn many_runs_fold_their_changes_and_runs_of_other_seeds_are_told() {
+    let bench = runs();
+    bench.engine(&["run", "short.rhai", "--seed", "7", "--out", "d"]);
+    bench.engine(&["compare", "a", "b", "a", "b", "d", "--out", "c"]);
+    let page = bench.read("c/compare.html");
+    assert_eq!(page.matches("<details>").count(), 8);
+    for words in
+        ["The runs have different seeds", "the bands of the quartiles are left out", "Compared: a and 4 others"]
+    {
+        assert!(page.contains(words), "{words}");
     }
 }
 

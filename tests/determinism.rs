@@ -51,6 +51,23 @@ fn one_thread_and_two_learn_the_same() {
 }
 
 #[test]
+fn a_seed_whose_base_lines_a_second_thread_measures_leaves_the_same_figures() {
+    let bench = Bench::new();
+    let figures = |threads: &str| {
+        let mut figures = run(&bench, &["--threads", threads, "--out", threads]);
+        figures["steps_per_second"].take();
+        figures
+    };
+    let one = figures("1");
+    assert!(one["untrained"]["distance_m"].as_f64().unwrap() > 0.0);
+    assert_eq!(one, figures("2"));
+    let spread = run(&bench, &["--seeds", "2", "--threads", "2", "--out", "many"]);
+    for line in ["untrained", "blind"] {
+        assert_eq!(spread["seeds"][0][line], one[line]);
+    }
+}
+
+#[test]
 fn every_compilation_of_the_vector_code_learns_the_same_behaviours() {
     let scripts = ["wall", "wall-left", "corridor", "platform", "object", "line", "avoid", "dock"];
     let learned = |processor: Processor, script: &str, set: &[&str]| {

@@ -104,11 +104,14 @@ fn what_a_spinning_robot_meets_is_no_success() {
 fn a_condition_that_always_holds_does_not_make_a_reward_a_success() {
     let turns = format!("rule \"turn\" when abs(action.angular) > 0.5 => 0.1;\n{HIT}");
     let measured = format!("measure r = action.linear < 0.1;\nrule \"slow\" when r => 0.1;\n{HIT}");
+    // What the robot itself did in the step before is no more than what it does now.
+    let steady = format!("rule \"steady\" when previous.action.index == action.index => 0.1;\n{HIT}");
     for script in [
         format!("{HIT}success \"earns\" when test.reward_per_1000 > -5; success \"always\" when test.laps > -1e9;"),
         format!("{HIT}success \"earns\" when test.reward_per_1000 > -5 || test.laps > 1e9;"),
         format!("{turns}success \"turns\" when test.per_1000(\"turn\") > 500;"),
         format!("{measured}success \"stands\" when test.mean(\"r\") > 0.9;"),
+        format!("{steady}success \"is steady\" when test.per_1000(\"steady\") > 500;"),
     ] {
         let runs = assert_none(&script, None, 5000, 2);
         assert!(runs.iter().all(|run| run.verdict.why != Because::Holds), "{script}");

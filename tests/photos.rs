@@ -105,6 +105,20 @@ fn the_manual_of_a_filter_that_is_not_there() {
     assert_snapshot!(Bench::new().failure(&["plugins", "show", "sobell"]));
 }
 
+#[test]
+fn filters_and_a_grid_are_a_script_enough_to_look_at_photographs_but_not_to_learn() {
+    let bench = Bench::new();
+    bench.write("look.rhai", "filter(\"sobel\", #{ threshold: 60 });\ngrid(#{ rows: 2, columns: 4 });\n");
+    bench.write("a.png", png(&[]));
+    let (_, said) = told(&bench, &["filter", "look.rhai", "a.png", "--set", "grid.rows=3", "--json"]);
+    let seen: Value = serde_json::from_str(said.lines().next().map_or("", |_| &said))
+        .unwrap_or_else(|error| panic!("{error}: {said}"));
+    assert_eq!(seen[0]["cells"].as_array().unwrap().len(), 12);
+    for command in ["run", "check"] {
+        assert!(bench.failure(&[command, "look.rhai"]).contains("E-SCRIPT-EMPTY"), "{command}");
+    }
+}
+
 // What a photograph becomes
 
 #[test]

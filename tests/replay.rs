@@ -127,6 +127,44 @@ fn a_forged_figure_curve_or_table_is_no_run_that_was_reproduced() {
 }
 
 #[test]
+fn a_forged_picture_or_page_is_named_and_one_that_is_gone_is_told() {
+    let bench = recorded(&[]);
+    let drawn = ["frame", "learning-curve", "policy", "trajectories"];
+    let files = drawn.iter().flat_map(|stem| [format!("{stem}.png"), format!("{stem}.svg")]);
+    for file in files.chain(["report.html".to_owned()]) {
+        let path = bench.path().join("a").join(&file);
+        let bytes = std::fs::read(&path).unwrap();
+        std::fs::write(&path, [&bytes[..], b" "].concat()).unwrap();
+        let told = bench.failure(&["replay", "a", "--verify"]);
+        assert!(told.starts_with("exit status 7") && told.contains("E-LOG-DIFFERS"), "{told}");
+        assert!(told.contains(&format!("drawn again, {file} differs")), "{told}");
+        std::fs::write(&path, bytes).unwrap();
+    }
+    assert!(bench.ok(&["replay", "a", "--verify"]).contains("9 pictures and pages again"));
+    std::fs::remove_file(bench.path().join("a/frame.png")).unwrap();
+    let told = bench.ok(&["replay", "a", "--verify"]);
+    assert!(told.contains("8 pictures and pages") && told.contains("not compared: frame.png"), "{told}");
+}
+
+#[test]
+fn what_is_drawn_of_a_checked_run_of_many_seeds_and_of_a_combination_is_compared() {
+    let bench = recorded(&["--seeds", "3", "--check"]);
+    // Curve, paths and the page; of the worst seed frame, policy and trajectories.
+    assert!(bench.ok(&["replay", "a", "--verify"]).contains("11 pictures and pages again"));
+    let page = bench.read("a/report.html");
+    bench.write("a/report.html", page.replacen("short", "shirt", 1));
+    assert!(bench.failure(&["replay", "a", "--verify"]).contains("report.html differs"));
+
+    let bench = recorded(&[]);
+    let script = format!("policy(\"one\", \"a\");\npolicy(\"two\", \"a\");\n{SCRIPT}");
+    bench.write("both.rhai", script.replace("steps: 800, ", ""));
+    bench.engine(&["run", "both.rhai", "--seeds", "2", "--out", "b"]);
+    bench.ok(&["replay", "b", "--verify"]);
+    bench.write("b/2/report.html", bench.read("b/1/report.html"));
+    assert!(bench.failure(&["replay", "b", "--verify"]).contains("2/report.html differs"));
+}
+
+#[test]
 fn steps_are_listed_with_their_rules_and_only_those_that_there_are() {
     let bench = recorded(&[]);
     let step = a_punished_step(&bench);

@@ -58,6 +58,14 @@ const CHEATS: &[Cheat] = &[
     Cheat { name: "U-turns", motions: &[(0.3, 0.0), (0.05, 0.8)], choice: |step| usize::from(step % 20 >= 12) },
     Cheat { name: "an eight", motions: &[(0.3, 0.3), (0.3, -0.3)], choice: |step| usize::from(step / 50 % 2 == 1) },
     Cheat { name: "weaves", motions: &[(0.3, 0.6), (0.3, -0.6)], choice: |step| usize::from(step / 3 % 2 == 1) },
+    Cheat { name: "wriggles", motions: &[(0.05, 0.8), (0.05, -0.8)], choice: |step| usize::from(step % 2 == 1) },
+    Cheat {
+        name: "wriggles on the spot",
+        motions: &[(0.0, 0.8), (0.0, -0.8)],
+        choice: |step| usize::from(step % 2 == 1),
+    },
+    Cheat { name: "rocks", motions: &[(0.1, 0.0), (-0.1, 0.0)], choice: |step| usize::from(step % 2 == 1) },
+    Cheat { name: "rocks and drifts", motions: &[(0.2, 0.0), (-0.12, 0.0)], choice: |step| usize::from(step % 2 == 1) },
 ];
 
 struct Blind(fn(u64) -> usize, u64);
@@ -115,8 +123,8 @@ fn no_untrained_policy_of_ten_is_called_done_in_any_shipped_behaviour() {
 }
 
 #[test]
-fn none_of_twenty_policies_that_see_nothing_is_called_done_in_any_shipped_behaviour() {
-    assert_eq!(CHEATS.len(), 20);
+fn none_of_24_policies_that_see_nothing_is_called_done_in_any_shipped_behaviour() {
+    assert_eq!(CHEATS.len(), 24);
     for name in SHIPPED {
         let plan = shipped(name);
         let numbers: Vec<u64> = (0..CHEATS.len() as u64).collect();
@@ -136,6 +144,20 @@ fn a_circle_inside_the_track_makes_no_laps() {
     let circle = CHEATS.iter().find(|cheat| cheat.name == "a circle of 3 m").unwrap();
     let verdict = of_cheat(&plan, circle);
     assert_eq!(verdict.success, Some(false), "{verdict:?}");
+}
+
+#[test]
+fn whoever_wriggles_on_the_spot_gets_nowhere_where_there_is_no_route() {
+    let plan = written("world(\"clutter\"); recovery(\"start\"); rule \"contact\" when robot.contact => -1 then fail;");
+    let never = AtomicBool::new(false);
+    for name in ["wriggles", "wriggles on the spot", "rocks", "rocks and drifts"] {
+        let cheat = CHEATS.iter().find(|cheat| cheat.name == name).unwrap();
+        let mut own = plan.clone();
+        own.settings.actions = cheat.motions.iter().map(|(linear, angular)| Twist::new(*linear, *angular)).collect();
+        let tested = test_choices(&own, 7, &never, &mut Blind(cheat.choice, 0), &mut ()).unwrap();
+        assert!(tested.figures.idle() > 0.9, "{name}: {}", tested.figures.idle());
+        assert_eq!(of_cheat(&plan, cheat).success, Some(false), "{name}");
+    }
 }
 
 #[test]

@@ -49,20 +49,29 @@ fn unix_s<S: Serializer>(time: &SystemTime, serializer: S) -> std::result::Resul
     serializer.serialize_u64(since.as_secs())
 }
 
-/// Every run under a folder, in the order of their paths; seeds of one run are not runs of their own.
-///
-/// # Errors
-/// If the folder cannot be read.
-pub fn runs_under(folder: &Path) -> Result<Vec<ShelvedRun>> {
-    let mut runs = Vec::new();
-    look(folder, 0, &mut runs)?;
-    runs.sort_by_key(|run| natural(&run.folder));
-    Ok(runs)
+/// What stands under a folder.
+#[derive(Debug, Default)]
+pub struct Shelf {
+    /// Every run, in the order of their paths; seeds of one run are not runs of their own.
+    pub runs: Vec<ShelvedRun>,
+    /// Why a folder below could not be looked into.
+    pub unread: Vec<Diagnostic>,
 }
 
-fn look(folder: &Path, depth: usize, runs: &mut Vec<ShelvedRun>) -> Result<()> {
+/// The runs under a folder.
+///
+/// # Errors
+/// If the folder itself cannot be read.
+pub fn runs_under(folder: &Path) -> Result<Shelf> {
+    let mut shelf = Shelf::default();
+    look(folder, 0, &mut shelf)?;
+    shelf.runs.sort_by_key(|run| natural(&run.folder));
+    Ok(shelf)
+}
+
+fn look(folder: &Path, depth: usize, shelf: &mut Shelf) -> Result<()> {
     if folder.join(RUN_FILE).is_file() {
-        runs.push(ShelvedRun::read(folder)?);
+        shelf.runs.push(ShelvedRun::read(folder)?);
         return Ok(());
     }
     let entries = std::fs::read_dir(folder).map_err(|error| Box::new(Diagnostic::disk("read", folder, &error)))?;
@@ -70,7 +79,9 @@ fn look(folder: &Path, depth: usize, runs: &mut Vec<ShelvedRun>) -> Result<()> {
         // A link may lead anywhere, also in circles.
         if depth < MOST_DEPTH && entry.file_type().is_ok_and(|kind| kind.is_dir()) {
             // Somebody else's folder among them is no reason to see none.
-            let _ = look(&entry.path(), depth + 1, runs);
+            if let Err(error) = look(&entry.path(), depth + 1, shelf) {
+                shelf.unread.push(*error);
+            }
         }
     }
     Ok(())
@@ -225,7 +236,7 @@ mod tests {
     #[test]
     fn runs_are_found_in_their_order_and_the_seeds_of_one_are_not_runs() {
         let place = shelf();
-        let found = runs_under(place.path()).unwrap();
+        let found = runs_under(place.path()).unwrap().runs;
         let names: Vec<_> = found.iter().map(|run| run.folder.strip_prefix(place.path()).unwrap().to_owned()).collect();
         assert_eq!(names, [Path::new("line/1-30"), Path::new("wall/2"), Path::new("wall/10")]);
         assert_eq!((found[0].words().as_str(), found[0].success), ("not finished", None));
@@ -236,9 +247,9 @@ mod tests {
         let place = shelf();
         let run = place.path().join("wall/2");
         tag_run(&run, Some(" best so far ")).unwrap();
-        assert_eq!(runs_under(&run).unwrap()[0].tag.as_deref(), Some("best so far"));
+        assert_eq!(runs_under(&run).unwrap().runs[0].tag.as_deref(), Some("best so far"));
         tag_run(&run, None).unwrap();
-        assert_eq!(runs_under(&run).unwrap()[0].tag, None);
+        assert_eq!(runs_under(&run).unwrap().runs[0].tag, None);
         for bad in ["", "two\nlines", &"x".repeat(61)] {
             assert_eq!(tag_run(&run, Some(bad)).unwrap_err().code, "E-RUN-TAG");
         }
@@ -253,6 +264,6 @@ mod tests {
         let place = shelf();
         assert_eq!(remove_run(&place.path().join("wall")).unwrap_err().code, "E-RUN-FILE");
         remove_run(&place.path().join("wall/2")).unwrap();
-        assert_eq!(runs_under(place.path()).unwrap().len(), 2);
+        assert_eq!(runs_under(place.path()).unwrap().runs.len(), 2);
     }
 }

@@ -20,11 +20,40 @@ const MOST_FAILURES: f64 = 20.0;
 /// # Errors
 /// If a sensor, a filter or the script fails.
 pub fn base_lines(plan: &Plan, seed: u64, tested: &TestRun, stop: &AtomicBool) -> Result<BaseLines> {
-    let mut lines = BaseLines::of_untrained(test_untrained(plan, seed, stop)?);
-    if plan.success().verdict(&tested.figures, &lines).is_success() {
-        lines.blind = best_blind(plan, seed, tested, &lines, stop)?;
+    Ahead { untrained: test_untrained(plan, seed, stop)?, glances: Vec::new() }.beside(plan, seed, tested, stop)
+}
+
+/// The base lines that do not depend on the test, for measuring while the robot still learns.
+pub(super) struct Ahead {
+    untrained: TestFigures,
+    /// Of each robot that always does one action, its first steps; empty if they are measured when they are asked for.
+    glances: Vec<TestFigures>,
+}
+
+impl Ahead {
+    /// Measures them.
+    ///
+    /// # Errors
+    /// As [`base_lines`].
+    pub(super) fn of(plan: &Plan, seed: u64, stop: &AtomicBool) -> Result<Self> {
+        let untrained = test_untrained(plan, seed, stop)?;
+        let (glance, asked) = (glance(plan), !plan.success().conditions().is_empty());
+        let robots = constant_robots(&plan.motions()).into_iter().filter(|_| asked);
+        let glances = robots.map(|(_, weights)| test_blind(&glance, weights, seed, stop)).collect::<Result<_>>()?;
+        Ok(Self { untrained, glances })
     }
-    Ok(lines)
+
+    /// These and the rest, once the test is done: as [`base_lines`], to the bit.
+    ///
+    /// # Errors
+    /// As [`base_lines`].
+    pub(super) fn beside(self, plan: &Plan, seed: u64, tested: &TestRun, stop: &AtomicBool) -> Result<BaseLines> {
+        let mut lines = BaseLines::of_untrained(self.untrained);
+        if plan.success().verdict(&tested.figures, &lines).is_success() {
+            lines.blind = best_blind(plan, seed, tested, &lines.untrained, self.glances, stop)?;
+        }
+        Ok(lines)
+    }
 }
 
 /// Tests a policy that knows no state, in the plan's test: every action is equally likely.
@@ -32,29 +61,47 @@ pub fn base_lines(plan: &Plan, seed: u64, tested: &TestRun, stop: &AtomicBool) -
 /// # Errors
 /// As [`base_lines`].
 pub fn test_untrained(plan: &Plan, seed: u64, stop: &AtomicBool) -> Result<TestFigures> {
-    let mut chooser = Blind::new(vec![1; plan.motions().len()], seed);
-    Ok(test_choices(plan, seed, stop, &mut chooser, &mut ())?.figures)
+    test_blind(plan, vec![1; plan.motions().len()], seed, stop)
 }
 
-/// The first robot that meets every condition without looking; else the one that fails least.
+/// Tests a robot that does not look.
+fn test_blind(plan: &Plan, weights: Vec<u64>, seed: u64, stop: &AtomicBool) -> Result<TestFigures> {
+    Ok(test_choices(plan, seed, stop, &mut Blind::new(weights, seed), &mut ())?.figures)
+}
+
+/// The plan with a test so short that a robot that does not look is not gone on with if it fails too often.
+fn glance(plan: &Plan) -> Plan {
+    let mut glance = plan.clone();
+    glance.settings.run.test_steps = plan.settings.run.test_steps.min(GLANCE_STEPS);
+    glance
+}
+
+/// The first robot that meets every condition without looking; else the one that fails least. `glances` are those of the
+/// constant robots, if they were measured before.
 fn best_blind(
     plan: &Plan,
     seed: u64,
     tested: &TestRun,
-    lines: &BaseLines,
+    untrained: &TestFigures,
+    glances: Vec<TestFigures>,
     stop: &AtomicBool,
 ) -> Result<Option<BlindFigures>> {
-    let (success, mut glance) = (plan.success(), plan.clone());
-    glance.settings.run.test_steps = plan.settings.run.test_steps.min(GLANCE_STEPS);
+    let (success, glance) = (plan.success(), glance(plan));
     let most = MOST_FAILURES.max(2.0 * tested.figures.failures_per_1000);
+    let as_tested = ("the same actions as often, in any state", tested.chosen.clone());
+    let robots = std::iter::once(as_tested).chain(constant_robots(&plan.motions()));
+    // The first robot depends on the test.
+    let glances = std::iter::once(None).chain(glances.into_iter().map(Some)).chain(std::iter::repeat(None));
     let mut best: Option<BlindFigures> = None;
-    for (does, weights) in blind_robots(&plan.motions(), &tested.chosen) {
-        let test = |plan: &Plan| test_choices(plan, seed, stop, &mut Blind::new(weights.clone(), seed), &mut ());
-        let mut figures = test(&glance)?.figures;
+    for ((does, weights), glanced) in robots.zip(glances) {
+        let mut figures = match glanced {
+            Some(figures) => figures,
+            None => test_blind(&glance, weights.clone(), seed, stop)?,
+        };
         if figures.failures_per_1000 <= most {
-            figures = test(plan)?.figures;
+            figures = test_blind(plan, weights, seed, stop)?;
         }
-        let done = figures.steps == tested.figures.steps && success.is_met_by(&figures, &lines.untrained);
+        let done = figures.steps == tested.figures.steps && success.is_met_by(&figures, untrained);
         if done || best.as_ref().is_none_or(|best| figures.failures_per_1000 < best.test.failures_per_1000) {
             best = Some(BlindFigures { does: does.to_owned(), test: figures });
         }
@@ -65,8 +112,8 @@ fn best_blind(
     Ok(best)
 }
 
-/// Robots that do not look, each with how often it does each action: as often as the robot that was tested, or always one.
-fn blind_robots(actions: &[Twist], chosen: &[u64]) -> Vec<(&'static str, Vec<u64>)> {
+/// Robots that always do one action, each with how often it does each of them.
+fn constant_robots(actions: &[Twist]) -> Vec<(&'static str, Vec<u64>)> {
     let least = |cost: &dyn Fn(&Twist) -> f64| {
         let costs = actions.iter().map(cost).enumerate().filter(|(_, cost)| cost.is_finite());
         costs.reduce(|a, b| if b.1 < a.1 { b } else { a }).map(|(index, _)| index)
@@ -83,14 +130,12 @@ fn blind_robots(actions: &[Twist], chosen: &[u64]) -> Vec<(&'static str, Vec<u64
         if fast { twist.angular_rad_per_s.abs() - 1e-6 * twist.linear_m_per_s } else { f64::INFINITY }
     };
     let always = |action: usize| (0..actions.len()).map(|other| u64::from(other == action)).collect();
-    let mut robots = vec![("the same actions as often, in any state", chosen.to_vec())];
     let constant = [
         ("drives straight on", least(&ahead)),
         ("spins left", least(&turning(1.0))),
         ("spins right", least(&turning(-1.0))),
     ];
-    robots.extend(constant.into_iter().filter_map(|(does, action)| Some((does, always(action?)))));
-    robots
+    constant.into_iter().filter_map(|(does, action)| Some((does, always(action?)))).collect()
 }
 
 /// Chooses by weights alone.
@@ -144,8 +189,8 @@ mod tests {
     fn the_constant_robots_are_the_straightest_fast_action_and_the_tightest_turns() {
         let actions = [(0.2, 0.0), (0.4, 0.0), (0.4, 0.8), (0.05, -0.8), (0.05, 0.8)];
         let actions = actions.map(|(linear, angular)| Twist::new(linear, angular));
-        let robots = blind_robots(&actions, &[5, 0, 0, 0, 2]);
+        let robots = constant_robots(&actions);
         let weights: Vec<_> = robots.iter().map(|(_, weights)| weights.as_slice()).collect();
-        assert_eq!(weights, [&[5, 0, 0, 0, 2], &[0, 1, 0, 0, 0], &[0, 0, 0, 0, 1], &[0, 0, 0, 1, 0]]);
+        assert_eq!(weights, [&[0, 1, 0, 0, 0], &[0, 0, 0, 0, 1], &[0, 0, 0, 1, 0]]);
     }
 }

@@ -227,6 +227,12 @@ impl<R: Robot> Cycle<R> {
         self.judge.guarding().instead_of(action, self.leave.allowed)
     }
 
+    /// Whether a guard holds for the choice that comes next; guards are counted from 0 in the order of the script.
+    #[must_use]
+    pub fn guard_holds(&self, guard: usize) -> bool {
+        self.leave.holds(guard)
+    }
+
     /// Which actions may be taken now, and which guards hold.
     pub(super) fn leave(&self) -> Leave {
         self.leave

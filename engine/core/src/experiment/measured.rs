@@ -1,7 +1,8 @@
 //! The figures of a test, from what was counted and from the truth.
 
+use super::spells::Spells;
 use super::summary::rule_totals;
-use super::truth::{Spells, Truth};
+use super::truth::Truth;
 use super::{Plan, Tally};
 use crate::stats::Sorted;
 use crate::verdict::{AskedFigure, MeasureTotal, StageTotal, TestFigures};
@@ -53,6 +54,7 @@ pub(super) fn figures(
         standing: share(spells.standing),
         circling: share(spells.circling),
         returning: share(spells.returning),
+        lingering: share(spells.lingering),
         backwards: net_route_m.map(|_| share(spells.backwards)),
         prey_distance_m: prey_m.iter().map(|distance| f64::from(*distance)).collect::<Sorted>().upper_median(),
         does_task: net_route_m.map(|net_m| net_m.abs() / seconds >= TASK_SPEED_M_PER_S),

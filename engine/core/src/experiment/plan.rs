@@ -84,7 +84,7 @@ impl Plan {
         overrides: &Overrides,
         filters: impl FnOnce() -> Result<Arc<Catalogue>>,
     ) -> Result<Self> {
-        let Draft { behaviour, mistakes, unread } = Draft::load(script, &overrides.params())?;
+        let Draft { behaviour, mistakes, unread } = Draft::load(script, &overrides.params())?.not_empty()?;
         match filters() {
             Ok(filters) => Self::resolve(Arc::new(behaviour), &unread, mistakes, overrides, filters),
             Err(error) => Err(mistakes.ended_by(*error)),

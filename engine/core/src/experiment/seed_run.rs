@@ -2,7 +2,8 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::{BrokenOff, Decider, Learned, Plan, Progress, RunLog, Summary, TestRun, base_lines, learn_into};
+use super::base_lines::{Ahead, base_lines};
+use super::{BrokenOff, Decider, Learned, Plan, Progress, RunLog, Summary, TestRun, learn_into};
 use crate::verdict::BaseLines;
 
 /// What one seed leaves.
@@ -28,13 +29,45 @@ pub fn run_seed(
     report: &(dyn Fn(Progress) + Sync),
     log: &mut RunLog,
 ) -> Result<SeedRun, Box<BrokenOff>> {
+    let (learned, tested) = learn_and_test(plan, seed, stop, report, log)?;
+    let lines = base_lines(plan, seed, &tested, stop);
+    SeedRun::or_broken(plan, seed, learned, tested, lines, log)
+}
+
+/// As [`run_seed`], to the bit: for a seed that has the cores to itself. A second thread, if rayon has one here, measures
+/// the base lines of the test meanwhile, unless a filter comes from a file: of those one robot at a time makes use. Of many
+/// seeds, one that waits for it would take up another seed.
+///
+/// # Errors
+/// As [`run_seed`].
+pub fn run_only_seed(
+    plan: &Plan,
+    seed: u64,
+    stop: &AtomicBool,
+    report: &(dyn Fn(Progress) + Sync),
+    log: &mut RunLog,
+) -> Result<SeedRun, Box<BrokenOff>> {
+    let mut filters = plan.settings.views().flat_map(|view| &view.filters);
+    if !filters.all(|filter| plan.filters.is_own(&filter.name)) {
+        return run_seed(plan, seed, stop, report, log);
+    }
+    let (tested, ahead) = rayon::join(|| learn_and_test(plan, seed, stop, report, log), || Ahead::of(plan, seed, stop));
+    let (learned, tested) = tested?;
+    let lines = ahead.and_then(|ahead| ahead.beside(plan, seed, &tested, stop));
+    SeedRun::or_broken(plan, seed, learned, tested, lines, log)
+}
+
+/// What a plan learns under a seed, if it learns, and its test.
+fn learn_and_test(
+    plan: &Plan,
+    seed: u64,
+    stop: &AtomicBool,
+    report: &(dyn Fn(Progress) + Sync),
+    log: &mut RunLog,
+) -> Result<(Option<Learned>, TestRun), Box<BrokenOff>> {
     let learned = if plan.learns() { Some(learn_into(plan, seed, stop, report, &mut log.learning)?) } else { None };
-    let tested = match Decider::of(learned.as_ref()).test(plan, seed, stop, &mut log.test) {
-        Ok(tested) => tested,
-        Err(error) => return Err(Box::new(BrokenOff { error, learned })),
-    };
-    match base_lines(plan, seed, &tested, stop) {
-        Ok(lines) => Ok(SeedRun::new(plan, seed, learned, tested, &lines, log)),
+    match Decider::of(learned.as_ref()).test(plan, seed, stop, &mut log.test) {
+        Ok(tested) => Ok((learned, tested)),
         Err(error) => Err(Box::new(BrokenOff { error, learned })),
     }
 }
@@ -54,5 +87,19 @@ impl SeedRun {
         let mut summary = Summary::new(plan, seed, learned.as_ref(), &tested, lines);
         summary.log_sha256 = log.is_kept().then(|| log.sha256());
         Self { learned, tested, summary }
+    }
+
+    fn or_broken(
+        plan: &Plan,
+        seed: u64,
+        learned: Option<Learned>,
+        tested: TestRun,
+        lines: crate::diagnostic::Result<BaseLines>,
+        log: &RunLog,
+    ) -> Result<Self, Box<BrokenOff>> {
+        match lines {
+            Ok(lines) => Ok(Self::new(plan, seed, learned, tested, &lines, log)),
+            Err(error) => Err(Box::new(BrokenOff { error, learned })),
+        }
     }
 }

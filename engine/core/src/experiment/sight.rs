@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::changes::{changed, with_params};
+use super::changes::changed;
 use super::parts::Parts;
 use super::{Overrides, Plan};
 use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
@@ -25,12 +25,12 @@ pub struct Sight {
 }
 
 impl Sight {
-    /// Loads a script for its filters and its grid; its world is not looked for.
+    /// Loads a script for its filters and its grid; its world is not looked for, and it needs no rule.
     ///
     /// # Errors
     /// If the script cannot be loaded, a change does not fit, or the chain or the grid does not work.
     pub fn load(script: &Path, overrides: &Overrides, filters: Arc<Catalogue>) -> Result<Self> {
-        let behaviour = with_params(Arc::new(Behaviour::load(script)?), overrides)?;
+        let behaviour = Arc::new(Behaviour::load_to_look(script, &overrides.params())?);
         let settings = changed(behaviour.settings(), behaviour.params(), overrides)?;
         let sight = Self { behaviour, settings, filters };
         sight.chain()?;

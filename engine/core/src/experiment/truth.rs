@@ -1,18 +1,11 @@
 //! What a reward cannot see: where the robot really is, and whether it gets anywhere.
 
+use super::spells::{SPELL_S, Spell, Spells};
 use super::{Cycle, Observer, Step};
-use crate::geometry::{Point2, Pose, wrap_angle};
+use crate::geometry::{Point2, Pose};
 use crate::robot::Robot;
 use crate::world::{RouteProgress, WorldSet};
-use std::f64::consts::TAU;
 use std::ops::ControlFlow;
-
-/// Seconds over which spinning, standing and circling are judged.
-const SPELL_S: f64 = 20.0;
-/// Turning tighter than this radius on average is spinning, metres.
-const SPIN_RADIUS_M: f64 = 0.3;
-/// A spell with less path than this is standing, metres.
-const STANDING_M: f64 = 0.2;
 
 /// Follows the true pose through a test.
 #[derive(Debug, Clone)]
@@ -27,7 +20,7 @@ pub(super) struct Truth {
     pub(super) distance_m: f64,
     spell: Spell,
     spell_steps: u64,
-    /// Whole spells, and of these spinning, standing, circling, and going backwards along the route.
+    /// Whole spells, and of these spinning, standing, circling, and so on, and going backwards along the route.
     pub(super) spells: Spells,
     /// Distance to the prey after each step, metres; empty without a prey.
     pub(super) prey_m: Vec<f32>,
@@ -43,32 +36,6 @@ struct Along {
     off_steps: u64,
     /// Sum of the distances from it after each step, metres.
     offsets_m: f64,
-}
-
-/// Counts of spells of 20 s.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) struct Spells {
-    /// All whole spells.
-    pub(super) all: u64,
-    /// Full turn or more on a radius below 0.3 m.
-    pub(super) spinning: u64,
-    /// Less than 0.2 m of path and no full turn.
-    pub(super) standing: u64,
-    /// Full turn or more on a wider radius, ending within a quarter of the path of where it began.
-    pub(super) circling: u64,
-    /// None of these, but ending within a quarter of the path of where it began: to and fro.
-    pub(super) returning: u64,
-    /// Net progress along the route below zero.
-    pub(super) backwards: u64,
-}
-
-#[derive(Debug, Clone, Copy)]
-struct Spell {
-    steps: u64,
-    path_m: f64,
-    turn_rad: f64,
-    from: Pose,
-    net_from_m: f64,
 }
 
 impl Truth {
@@ -98,11 +65,8 @@ impl Truth {
     }
 
     fn follow(&mut self, pose: Pose, prey: Option<Pose>) {
-        let moved = pose.distance_m(self.last);
-        self.distance_m += moved;
-        self.spell.path_m += moved;
-        self.spell.turn_rad += wrap_angle(pose.yaw_rad - self.last.yaw_rad);
-        self.spell.steps += 1;
+        self.distance_m += pose.distance_m(self.last);
+        self.spell.follow(pose);
         self.last = pose;
         let layout = &self.worlds.layouts()[self.at];
         if let (Some(along), Some(lap)) = (self.alongs.get_mut(self.at), layout.lap) {
@@ -157,19 +121,7 @@ impl Truth {
 
     fn end_spell(&mut self) {
         let net_m = self.net_m();
-        let Spell { path_m, turn_rad, from, net_from_m, .. } = self.spell;
-        let (turned, away_m) = (turn_rad.abs() >= TAU, self.last.distance_m(from));
-        self.spells.all += 1;
-        if turned && path_m < SPIN_RADIUS_M * turn_rad.abs() {
-            self.spells.spinning += 1;
-        } else if turned && away_m < 0.25 * path_m {
-            self.spells.circling += 1;
-        } else if path_m < STANDING_M {
-            self.spells.standing += 1;
-        } else if away_m < 0.25 * path_m {
-            self.spells.returning += 1;
-        }
-        self.spells.backwards += u64::from(net_m.is_some_and(|net_m| net_m < net_from_m));
+        self.spell.count(net_m, &mut self.spells);
         self.spell = Spell::new(self.last, net_m.unwrap_or(0.0));
     }
 }
@@ -186,11 +138,5 @@ impl<R: Robot> Observer<R> for Truth {
         if let Some(here) = cycle.robot().whereabouts() {
             self.jump(cycle.robot().world_index(), here.pose);
         }
-    }
-}
-
-impl Spell {
-    fn new(from: Pose, net_from_m: f64) -> Self {
-        Self { steps: 0, path_m: 0.0, turn_rad: 0.0, from, net_from_m }
     }
 }

@@ -76,12 +76,17 @@ impl Catalogue {
 
     fn check_free(&self, name: &str, path: &Path) -> Result<()> {
         let file = self.files.iter().find(|file| file.name == name).map(|file| file.path.display().to_string());
-        let own = self.linked_in.iter().any(|entry| entry.descriptor.name == name).then(|| "the engine".to_owned());
+        let own = self.is_own(name).then(|| "the engine".to_owned());
         let Some(other) = own.or(file) else { return Ok(()) };
         let (name, path) = (printable(name), printable(&path.display().to_string()));
         let message = format!("there are two filters '{name}': in {other} and in '{path}'");
         let help = "give one of them another name, in its descriptor and as the name of its file";
         Diagnostic::new("E-FILTER-TWICE", message).help(help).fail()
+    }
+
+    /// Whether a filter of this name is the program's own: it keeps nothing from frame to frame.
+    pub(crate) fn is_own(&self, name: &str) -> bool {
+        self.linked_in.iter().any(|entry| entry.descriptor.name == name)
     }
 
     /// The filter called `name`, loaded if it was not before.

@@ -133,7 +133,7 @@ facts! {
     GroundBrightness: ground "brightness", GreyLevels, Between(0.0, 255.0), NoBeam, Number(|f| brightness(f.ground[0])), "How bright the ground is under the middle; 0 off the ground.";
     GroundLeft: ground "left", GreyLevels, Between(0.0, 255.0), NoBeam, Number(|f| brightness(f.ground[1])), "The same `ground.aside_m` to the left.";
     GroundRight: ground "right", GreyLevels, Between(0.0, 255.0), NoBeam, Number(|f| brightness(f.ground[2])), "The same to the right.";
-    GroundHue: ground "hue_deg", Degrees, Between(0.0, 360.0), NoBeam, Number(|f| hue_deg(f.ground[0])), "Its hue under the middle, as filter `colour` counts it: red 0, green 120; 0 of grey.";
+    GroundHue: ground "hue_deg", Degrees, Between(0.0, 360.0), NoBeam, Number(|f| hue_deg(f.ground[0])), "Its hue under the middle: red 0, green 120; 0 of grey. Filter `colour` counts it in steps of 0.234 degrees from the nearest of red, green and blue, and drops what is less.";
     GroundSaturation: ground "saturation", Share, Between(0.0, 1.0), NoBeam, Number(|f| saturation(f.ground[0])), "Its saturation under the middle, as filter `colour` counts it.";
     StageIndex: stage "index", NoUnit, Between(0.0, 15.0), NoBeam, Whole(|f| f.stage.index as i64), "The number of the stage, from 0, in the order of `stages`.";
     StageSteps: stage "steps", Unit::Steps, Steps, NoBeam, Whole(|f| whole(f.stage.steps)), "Steps since it was entered.";

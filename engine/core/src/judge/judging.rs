@@ -350,7 +350,8 @@ impl Judge {
     }
 
     /// What the condition of a guard reads in the present facts, part by part.
-    pub(crate) fn guard_evidence(&self, guard: usize) -> Vec<PartRead> {
+    #[must_use]
+    pub fn guard_evidence(&self, guard: usize) -> Vec<PartRead> {
         let parts = self.present.compiled.guards.get(guard).map_or(&[][..], |guard| &guard.parts);
         parts.iter().map(|part| part.evidence(self.present.inputs())).collect()
     }

@@ -17,8 +17,8 @@ use super::syntax::{Forms, written_rules};
 use super::tree::{Tree, tree};
 use super::unread::Unread;
 use super::{
-    guards, is_key, measures, memory, names, parts, rehearsal, state_parts, stops, success, syntax, top_level, types,
-    uses,
+    guards, is_key, known, measures, memory, names, parts, rehearsal, state_parts, stops, success, syntax, top_level,
+    types, uses,
 };
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, printable};
 use crate::judge::Look;
@@ -78,12 +78,21 @@ impl Draft {
         }
     }
 
-    /// The behaviour.
+    /// The behaviour, with or without anything to learn.
     ///
     /// # Errors
     /// If there is a mistake.
     pub(super) fn end(self) -> Result<Behaviour> {
         self.mistakes.end().map(|()| self.behaviour)
+    }
+
+    /// This draft, unless there is nothing to learn in it and nothing else is wrong.
+    ///
+    /// # Errors
+    /// `E-SCRIPT-EMPTY`.
+    pub(crate) fn not_empty(self) -> Result<Self> {
+        let is_empty = self.behaviour.rules().is_empty() && self.mistakes.is_empty();
+        if is_empty { empty(self.behaviour.source()).fail() } else { Ok(self) }
     }
 
     fn understood(
@@ -115,6 +124,8 @@ impl Draft {
         let declared = Declared::register(&mut engine, &tree, values);
         let constants = top_level::run(&engine, code, &tree, &log, &mut spoilt, mistakes)?;
         let params = declared.finish(code, values, mistakes);
+        // A variable whose statement a mistake spoils has no value.
+        known::check_known(code, &tree.ast, &constants, mistakes);
         spoilt.spread(mistakes);
         let calls = spoilt.setup_calls(mistakes);
         let SetUp { settings, places, mut unread, bins, body, edition } =
@@ -166,9 +177,6 @@ impl ReadScript<'_> {
         let success = success::conditions(code, &tree.ast, &constants, &names, spoilt, mistakes);
         let function = |name| if has_function(&tree.ast, name) { code.function(name) } else { None };
         let (reward, calibrate) = (function("reward"), function("calibrate"));
-        if rules.is_empty() && reward.is_none() && mistakes.is_empty() {
-            return Err(empty(code));
-        }
         let mut compiler = Compiler { constants: &constants, needs: &mut needs, script: &mut script };
         let reward_parts =
             reward.as_ref().map_or_else(Vec::new, |span| parts::function_parts(code, &tree.ast, span, &mut compiler));
@@ -216,7 +224,15 @@ impl Behaviour {
     /// If the file cannot be read as a script, or anything in it is wrong: each mistake in the user's own line, with what
     /// to write.
     pub fn load(path: &Path) -> Result<Self> {
-        Draft::load(path, &ParamValues::new())?.end()
+        Draft::load(path, &ParamValues::new())?.not_empty()?.end()
+    }
+
+    /// Loads a script that need not say what is learned: for whoever looks through its filters.
+    ///
+    /// # Errors
+    /// As [`Behaviour::load`], but for a script without rules.
+    pub(crate) fn load_to_look(path: &Path, values: &ParamValues) -> Result<Self> {
+        Draft::load(path, values)?.end()
     }
 
     /// Loads a script from its text; `name` is the behaviour's. Of bodies it knows those that ship.
@@ -246,7 +262,7 @@ impl Behaviour {
         bodies: &BodyFiles<'_>,
         values: &ParamValues,
     ) -> Result<Self> {
-        let behaviour = Draft::read(name, source, bodies, values, edition)?.end()?;
+        let behaviour = Draft::read(name, source, bodies, values, edition)?.not_empty()?.end()?;
         params::check_values(behaviour.params(), values).map(|()| behaviour)
     }
 
@@ -344,8 +360,8 @@ fn has_function(ast: &AST, name: &str) -> bool {
     ast.iter_functions().any(|function| function.name == name)
 }
 
-fn empty(code: &Code) -> Diagnostic {
-    let path = printable(&code.source.path.display().to_string());
+fn empty(source: &SourceText) -> Diagnostic {
+    let path = printable(&source.path.display().to_string());
     let message = format!("'{path}' has neither a rule nor 'fn reward': nothing could be learned");
     Diagnostic::new("E-SCRIPT-EMPTY", message)
         .help("write a rule: rule \"too close\" when laser.nearest < 0.25 => -1 then recover;")

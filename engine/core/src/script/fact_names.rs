@@ -115,6 +115,9 @@ impl Names<'_> {
     fn no_fact(&mut self, group: &str, key: &str, position: Position) {
         match fact_table::call(self.row_group(group), key).and_then(Fact::form) {
             Some((form, _)) => {
+                // A view is called by its own name.
+                let row = self.row_group(group);
+                let form = form.strip_prefix(row).map_or_else(|| form.to_owned(), |rest| format!("{group}{rest}"));
                 let message = format!("'{key}' needs arguments");
                 self.mistake("E-SCRIPT-FACT", position, message, "here", format!("write {form}"));
             }

@@ -15,6 +15,7 @@ mod editions;
 mod fact_names;
 mod guards;
 mod is_key;
+mod known;
 mod measurable;
 mod measures;
 mod memory;

@@ -1,5 +1,6 @@
 //! Which rules and measures read nothing but what the robot itself does: figures of these can be had like a reward.
 
+use super::access::{Access, Link};
 use super::syntax::{written_measures, written_rules};
 use rhai::{ASTNode, Expr, Stmt};
 
@@ -33,18 +34,35 @@ impl<'a> OwnDoing<'a> {
     fn reads_more(&self, expr: &Expr, measures: &[&str], is_group: &dyn Fn(&str) -> bool) -> bool {
         let mut more = false;
         expr.walk(&mut Vec::new(), &mut |path: &[ASTNode<'_>]| {
-            match path.last() {
-                Some(ASTNode::Expr(Expr::Variable(variable, ..))) => {
+            match path {
+                [above @ .., ASTNode::Expr(Expr::Variable(variable, ..))] => {
                     let name = variable.1.as_str();
-                    let measured = measures.contains(&name) && !self.measures.contains(&name);
-                    more |= measured || name == "facts" || is_group(name) && !OWN.contains(&name);
+                    let group = group_read(name, above.last());
+                    let own = OWN.contains(&group) || self.measures.contains(&group);
+                    // What is no group is a constant, unless it is asked of the facts.
+                    let is_fact = is_group(group) || measures.contains(&group) || matches!(name, "facts" | "previous");
+                    more |= is_fact && !own;
                 }
                 // Another rule may read anything.
-                Some(ASTNode::Expr(Expr::FnCall(call, _))) => more |= matches!(call.name.as_str(), "fired" | "since"),
+                [.., ASTNode::Expr(Expr::FnCall(call, _))] => {
+                    more |= matches!(call.name.as_str(), "fired" | "since");
+                }
                 _ => {}
             }
             true
         });
         more
     }
+}
+
+/// The group that a variable begins: that of `previous.action.linear` and of `facts.action.linear` is `action`.
+fn group_read<'a>(variable: &'a str, above: Option<&ASTNode<'a>>) -> &'a str {
+    let Some(ASTNode::Expr(whole)) = above else { return variable };
+    let Some(access) = Access::of(whole).filter(|access| access.root == variable) else { return variable };
+    let properties = access.links.iter().map_while(|link| match link {
+        Link::Property(name, _) => Some(*name),
+        _ => None,
+    });
+    let mut path = std::iter::once(access.root).chain(properties);
+    path.find(|name| !matches!(*name, "facts" | "previous")).unwrap_or(variable)
 }

@@ -30,6 +30,27 @@ pub(super) fn body_end(plain: &str, start: usize) -> usize {
     plain.len()
 }
 
+/// The end of an operand: of its last name, number or bracket.
+pub(super) fn operand_end(code: &Code, expr: &Expr) -> usize {
+    let start = match expr {
+        Expr::FnCall(call, _) if call.is_operator_call() && !call.args.is_empty() => {
+            return call.args.last().map_or(0, |last| operand_end(code, last));
+        }
+        Expr::And(parts, _) | Expr::Or(parts, _) => return parts.last().map_or(0, |last| operand_end(code, last)),
+        other => offset(&code.source, first(other)),
+    };
+    let mut depth = 0_i32;
+    for (index, c) in code.plain[start..].char_indices() {
+        match c {
+            '(' | '[' => depth += 1,
+            ')' | ']' if depth > 0 => depth -= 1,
+            _ if depth > 0 || c.is_alphanumeric() || matches!(c, '_' | '.') => {}
+            _ => return start + index,
+        }
+    }
+    code.plain.len()
+}
+
 /// The bytes of an expression: from its first token to what ends it.
 pub(super) fn span(code: &Code, expr: &Expr) -> Range<usize> {
     let start = offset(&code.source, first(expr));

@@ -184,6 +184,9 @@ fn step(read: Read, ahead: &str) -> Result<Option<(&str, Read)>, &'static str> {
         }
         Read::Stage if ahead == "," => (ahead, Read::In),
         Read::Name | Read::Stage if ahead == "when" => (ahead, Read::When),
+        Read::Name | Read::Stage if matches!(ahead, "for" | "once" | "per" | "then" | "=>") => {
+            return Err("the order of a rule is: in, when, for, once, =>, per second, then");
+        }
         Read::Name => return Err("after the rule's name comes 'when' and a condition"),
         Read::Stage => return Err("after the stages comes 'when' and a condition"),
         Read::When if matches!(ahead, "for" | "=>" | ";") => return Err("after 'when' comes a condition"),
@@ -199,7 +202,7 @@ fn step(read: Read, ahead: &str) -> Result<Option<(&str, Read)>, &'static str> {
         }
         Read::Condition if ahead == "," => return Err("conditions are joined with '&&' (and) or '||' (or)"),
         Read::Condition => {
-            return Err("after the condition comes 'for N steps', 'for N seconds', or '=>' and a value");
+            return Err("after the condition comes 'for N steps', 'for N seconds', 'once', or '=>' and a value");
         }
         Read::Unit => return Err("this rule has no value: after the time comes '=>' and a number, such as -1"),
         Read::Once => return Err("this rule has no value: after 'once' comes '=>' and a number, such as 1"),

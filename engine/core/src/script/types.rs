@@ -2,7 +2,7 @@
 //! same. What has no type that can be read from the text is let through.
 
 use super::access::{Access, Link, fact_of};
-use super::positions::first;
+use super::positions::{first, operand_end};
 use super::source::Code;
 use super::syntax::{is_success_expr, written_measures};
 use crate::diagnostic::{Diagnostic, Mistakes};
@@ -24,20 +24,17 @@ pub(super) fn check_types(code: &Code, ast: &AST, mistakes: &mut Mistakes) {
     let mut facts = vec!["facts"];
     let functions = ast.iter_functions().filter(|function| matches!(function.name, "reward" | "calibrate"));
     facts.extend(functions.filter_map(|function| function.params.first().copied()));
-    let mut checker = TypeChecker { code, facts: &facts, named: Vec::new() };
+    let mut checker = TypeChecker { code, facts: &facts, named: Vec::new(), in_function: false };
     checker.named = named(ast, &checker);
     for (part, in_function) in [(ast.clone_statements_only(), false), (ast.clone_functions_only(), true)] {
+        checker.in_function = in_function;
         part.walk(&mut |path: &[ASTNode<'_>]| {
             let Some((ASTNode::Expr(expr), above)) = path.split_last() else { return true };
             let is =
                 |node: &ASTNode<'_>, test: &dyn Fn(&Expr) -> bool| matches!(node, ASTNode::Expr(expr) if test(expr));
-            let judged = in_function || above.iter().any(|node| is(node, &|expr| matches!(expr, Expr::Custom(..))));
             let told =
                 above.iter().any(|node| is(node, &|expr| is_success_expr(expr) || checker.wrong(expr).is_some()));
-            if judged
-                && !told
-                && let Some(wrong) = checker.wrong(expr)
-            {
+            if !told && let Some(wrong) = checker.wrong(expr) {
                 mistakes.add(wrong);
             }
             true
@@ -51,6 +48,8 @@ struct TypeChecker<'a> {
     facts: &'a [&'a str],
     /// Measures and constants, each with what it is.
     named: Vec<(String, Kind)>,
+    /// Whether it is a function's own variable that the parser found where it says so, not the top level's.
+    in_function: bool,
 }
 
 /// What measures and constants are, as far as each can be told without those that it reads.
@@ -230,25 +229,8 @@ impl TypeChecker<'_> {
         offset(&self.code.source, first(expr))
     }
 
-    /// The end of an operand: of its last name, number or bracket.
     fn end(&self, expr: &Expr) -> usize {
-        let start = match expr {
-            Expr::FnCall(call, _) if call.is_operator_call() && !call.args.is_empty() => {
-                return call.args.last().map_or(0, |last| self.end(last));
-            }
-            Expr::And(parts, _) | Expr::Or(parts, _) => return parts.last().map_or(0, |last| self.end(last)),
-            other => self.start(other),
-        };
-        let mut depth = 0_i32;
-        for (index, c) in self.code.plain[start..].char_indices() {
-            match c {
-                '(' | '[' => depth += 1,
-                ')' | ']' if depth > 0 => depth -= 1,
-                _ if depth > 0 || c.is_alphanumeric() || matches!(c, '_' | '.') => {}
-                _ => return start + index,
-            }
-        }
-        self.code.plain.len()
+        operand_end(self.code, expr)
     }
 
     /// What an expression is, if its text says so.
@@ -268,7 +250,7 @@ impl TypeChecker<'_> {
     }
 
     fn fact(&self, expr: &Expr) -> Option<Kind> {
-        let own = Access::of(expr).filter(|access| access.links.is_empty() && !access.is_local);
+        let own = Access::of(expr).filter(|access| access.links.is_empty() && !(self.in_function && access.is_local));
         if let Some(own) = own
             && let Some((_, kind)) = self.named.iter().find(|(name, _)| name == own.root)
         {

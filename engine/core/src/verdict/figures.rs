@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::asked::{AskedFigure, Probe};
+use super::totals::{MeasureTotal, RuleTotal, StageTotal};
 use super::window::WindowCounts;
 
 /// The frozen policy, judged by the script and by the truth.
@@ -54,6 +55,9 @@ pub struct TestFigures {
     pub circling: f64,
     /// Share of the other spells that end within a quarter of their path of where they began, as going to and fro does.
     pub returning: f64,
+    /// Share of the other spells that stay within a circle of 0.6 m, as wriggling on the spot does.
+    #[serde(default)]
+    pub lingering: f64,
     /// Share of spells with backward progress along the route; null without one.
     pub backwards: Option<f64>,
     /// Median distance between the robot and the prey, metres, centre to centre; null without one.
@@ -80,39 +84,6 @@ pub struct TestFigures {
     pub asked: Vec<AskedFigure>,
 }
 
-/// What one rule did.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct RuleTotal {
-    /// The rule's name.
-    pub name: String,
-    /// How often it fired.
-    pub fired: u64,
-    /// Sum of what it added.
-    pub total: f64,
-}
-
-/// How often one stage was reached.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct StageTotal {
-    /// The stage's name.
-    pub name: String,
-    /// Share of the attempts, the unfinished one included, in which a rule entered it.
-    pub rate: f64,
-}
-
-/// What one measure came to, over all steps; true counts 1, false 0.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct MeasureTotal {
-    /// The measure's name.
-    pub name: String,
-    /// Its mean.
-    pub mean: f64,
-    /// The least value.
-    pub least: f64,
-    /// The greatest value.
-    pub greatest: f64,
-}
-
 impl TestFigures {
     /// How many attempts ended.
     #[must_use]
@@ -126,10 +97,10 @@ impl TestFigures {
         count as f64 * 1000.0 / self.steps.max(1) as f64
     }
 
-    /// Share of spells without getting anywhere: spinning, standing, circling or returning.
+    /// Share of spells without getting anywhere: spinning, standing, circling, returning or lingering.
     #[must_use]
     pub fn idle(&self) -> f64 {
-        self.spinning + self.standing + self.circling + self.returning
+        self.spinning + self.standing + self.circling + self.returning + self.lingering
     }
 }
 
@@ -361,7 +332,8 @@ pub const FIGURES: &[TestFigure] = &[
         |test| test.returning,
         "Other spells of 20 s that end near where they began: to and fro.",
     ),
-    test("idle", "share", TestFigures::idle, "Spells spinning, standing, circling or returning."),
+    test("lingering", "share", |test| test.lingering, "Other spells of 20 s that stay within a circle of 0.6 m."),
+    test("idle", "share", TestFigures::idle, "Spells spinning, standing, circling, returning or lingering."),
     route("backwards", "share", |test| test.backwards, "Spells of 20 s with backward progress along the route."),
     asked(
         "gap_m",

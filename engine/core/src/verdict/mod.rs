@@ -12,14 +12,16 @@ mod figures;
 mod judged;
 mod success;
 mod term;
+mod totals;
 mod window;
 
 pub use asked::{AskedFigure, Probe, Request};
 pub use base_lines::{BaseLines, BlindFigures};
-pub use figures::{FIGURES, MeasureTotal, RuleTotal, StageTotal, TestFigure, TestFigures};
+pub use figures::{FIGURES, TestFigure, TestFigures};
 pub use judged::{Because, ConditionVerdict, FigureVerdict, SuccessVerdict};
 pub use success::{Success, SuccessCondition};
 pub use term::Subject;
+pub use totals::{MeasureTotal, RuleTotal, StageTotal};
 pub use window::{WINDOW_STEPS, Window, WindowCounts};
 
 pub(crate) use default::Endable;

@@ -30,6 +30,8 @@ use crate::report::{CurveGroup, compared_curves};
 pub struct Comparison {
     /// The runs by the names that were given.
     pub runs: Vec<String>,
+    /// The seeds of each run.
+    pub seeds: Vec<Vec<u64>>,
     /// How many seeds of each succeed.
     pub success: Vec<SuccessSide>,
     /// The figures.
@@ -38,6 +40,9 @@ pub struct Comparison {
     pub states: Vec<StateComparison>,
     /// For each run after the first: what was changed.
     pub changes: Vec<Changes>,
+    /// Whether some run has curves of several seeds.
+    #[serde(skip)]
+    pub several: bool,
     /// The curves over one another, a whole SVG.
     #[serde(skip)]
     pub curves_svg: Option<String>,
@@ -67,10 +72,12 @@ impl Comparison {
         };
         Ok(Self {
             runs: sides.iter().map(|side| side.name.clone()).collect(),
+            seeds: sides.iter().map(|side| side.seeds.iter().map(|seed| seed.summary.seed).collect()).collect(),
             success: figures::successes(sides),
             figures: figures::figures(sides),
             states: others.iter().map(|other| StateComparison::new(first, other)).collect(),
             changes: others.iter().map(|other| Changes::new(&first.plan, &other.plan)).collect(),
+            several: sides.iter().any(|side| side.seeds.len() > 1),
             curves_svg,
         })
     }

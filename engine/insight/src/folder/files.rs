@@ -3,6 +3,8 @@
 use std::path::Path;
 
 use super::SeedResult;
+use super::pages::PAGE_FILE;
+use super::pictures::PICTURES;
 use crate::report::{CurveRow, curve_csv, disagreements_csv, write_atomic};
 use crate::store::{LOG_FILE, POLICY_FILE, RUN_FILE, SUMMARY_FILE, log_to_bytes, policy_to_toml, run_to_toml};
 use engine::diagnostic::{Diagnostic, Result};
@@ -34,6 +36,21 @@ pub(super) fn write_run(folder: &Path, plan: &Plan, seed: u64) -> Result<()> {
 
 /// The file of the learning curve in a run's folder.
 pub const CURVE_FILE: &str = "curve.csv";
+
+/// Removes pictures and a page that an older run drew in a folder: of many seeds only one has pictures, and not always the same.
+pub(super) fn remove_drawn(folder: &Path) -> Result<()> {
+    let pictures = PICTURES.iter().flat_map(|stem| ["svg", "png"].map(|ending| format!("{stem}.{ending}")));
+    for name in pictures.chain([PAGE_FILE.to_owned()]) {
+        let path = folder.join(name);
+        match std::fs::remove_file(&path) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Diagnostic::disk("remove the old", &path, &error).fail();
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
 
 /// Writes `log.bin`.
 pub(super) fn write_log(folder: &Path, plan: &Plan, seed: u64, log: &RunLog) -> Result<()> {

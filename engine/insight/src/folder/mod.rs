@@ -1,5 +1,6 @@
 //! A run's folder, written: what `store` reads again, the pictures of `report` and the page of `page`.
 
+mod drawn;
 mod files;
 mod pages;
 mod pictures;
@@ -13,9 +14,10 @@ use crate::report::write_atomic;
 use crate::store::{POLICY_FILE, RUN_FILE, SUMMARY_FILE, run_to_toml};
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Learned, Plan, RunLog, SeedRun, Spread};
-use files::{write_log, write_policy, write_run, write_seed};
+use files::{remove_drawn, write_log, write_policy, write_run, write_seed};
 use taken::{Claim, taken};
 
+pub use drawn::Redrawn;
 pub use files::{CURVE_FILE, create_folder, curve_of, write_json};
 pub use test_folder::TestFolder;
 
@@ -32,6 +34,8 @@ pub struct SeedResult {
 #[derive(Debug, Clone)]
 pub struct RunFolder {
     path: PathBuf,
+    /// Where its logs are: the same folder, unless it is drawn again elsewhere.
+    logs: PathBuf,
     /// Whether each seed has a folder of its own in it.
     many: bool,
 }
@@ -63,7 +67,7 @@ impl RunFolder {
         create_folder(&path)?;
         claim.clear(&path)?;
         write_atomic(&path.join(RUN_FILE), run.as_bytes())?;
-        Ok(Self { path, many: seeds.len() > 1 })
+        Ok(Self { logs: path.clone(), path, many: seeds.len() > 1 })
     }
 
     /// Where it is.
@@ -115,13 +119,20 @@ impl RunFolder {
             let spread = Spread::new(results.iter().map(|result| result.run.summary.clone()).collect());
             write_json(&self.path.join(SUMMARY_FILE), &spread)?;
         }
+        remove_drawn(&self.path)?;
         for result in results {
             let folder = self.of_seed(result.run.summary.seed)?;
+            remove_drawn(&folder)?;
             if self.many {
                 write_run(&folder, plan, result.run.summary.seed)?;
             }
             write_seed(&folder, plan, result)?;
         }
+        self.show(plan, results, checked)
+    }
+
+    /// Pictures and pages.
+    fn show(&self, plan: &Plan, results: &[SeedResult], checked: Option<&Report>) -> Result<()> {
         if self.many {
             pictures::draw_paths(&self.path, plan, results)?;
         }
@@ -138,7 +149,7 @@ impl RunFolder {
         let failures = |result: &SeedResult| result.run.summary.test.failures_per_1000;
         let Some(worst) = results.iter().max_by(|a, b| failures(a).total_cmp(&failures(b))) else { return Ok(()) };
         pictures::draw_seed(&self.of_seed(worst.run.summary.seed)?, plan, worst)?;
-        pages::write_page(&self.path, plan, results, checked)
+        pages::write_page(&self.path, &self.logs, plan, results, checked)
     }
 
     /// Each seed has its own pictures and its own page.
@@ -146,7 +157,8 @@ impl RunFolder {
         for result in results {
             let folder = self.of_seed(result.run.summary.seed)?;
             pictures::draw_seed(&folder, plan, result)?;
-            pages::write_page(&folder, plan, std::slice::from_ref(result), checked)?;
+            let logs = if self.many { self.logs.join(result.run.summary.seed.to_string()) } else { self.logs.clone() };
+            pages::write_page(&folder, &logs, plan, std::slice::from_ref(result), checked)?;
         }
         Ok(())
     }

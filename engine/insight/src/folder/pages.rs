@@ -15,8 +15,17 @@ const SHOTS: usize = 60;
 /// Seeds whose steps can stand in one page.
 const MOST_SEEDS: usize = 3;
 
-/// Writes the page of a run; of many seeds, the median one and the worst bring their steps.
-pub(super) fn write_page(folder: &Path, plan: &Plan, results: &[SeedResult], checked: Option<&Report>) -> Result<()> {
+/// The page in a run's folder.
+pub(super) const PAGE_FILE: &str = "report.html";
+
+/// Writes the page of a run; of many seeds, the median one and the worst bring their steps, from their logs in `logs`.
+pub(super) fn write_page(
+    folder: &Path,
+    logs: &Path,
+    plan: &Plan,
+    results: &[SeedResult],
+    checked: Option<&Report>,
+) -> Result<()> {
     let mut order: Vec<usize> = (0..results.len()).collect();
     let failures = failures(results);
     order.sort_by(|a, b| failures[*b].total_cmp(&failures[*a]));
@@ -27,7 +36,7 @@ pub(super) fn write_page(folder: &Path, plan: &Plan, results: &[SeedResult], che
         if results[index].log.is_none() {
             let seed = results[index].run.summary.seed;
             // The page of one seed of many stands in the seed's own folder.
-            let own = if results.len() == 1 { folder.to_owned() } else { folder.join(seed.to_string()) };
+            let own = if results.len() == 1 { logs.to_owned() } else { logs.join(seed.to_string()) };
             read.push((index, read_back(&own, plan, seed)?));
         }
     }
@@ -50,7 +59,7 @@ pub(super) fn write_page(folder: &Path, plan: &Plan, results: &[SeedResult], che
     if let Some(report) = checked {
         document = document.with_check(report);
     }
-    write_atomic(&folder.join("report.html"), page(Some(&document))?.html.as_bytes())
+    write_atomic(&folder.join(PAGE_FILE), page(Some(&document))?.html.as_bytes())
 }
 
 /// Failures of each seed in 1,000 steps of its test.

@@ -13,6 +13,9 @@ use engine::diagnostic::Result;
 use engine::experiment::{Learned, Plan, Spread, TestRun, Trail, WINDOW_STEPS};
 use engine::learner::PolicyRow;
 
+/// The pictures that a run's folder may hold, without their endings.
+pub(super) const PICTURES: [&str; 5] = ["learning-curve", "paths", "trajectories", "policy", "frame"];
+
 pub(super) fn draw_curve(folder: &Path, plan: &Plan, results: &[SeedResult]) -> Result<()> {
     let summary = |result: &SeedResult| result.run.summary.clone();
     let curves: Vec<Vec<f64>> = results.iter().map(|result| summary(result).reinforcement_per_400).collect();

@@ -66,27 +66,34 @@ fn never(plan: &Plan, index: usize, seen: &RuleTrial, needed: u64, steps: u64) -
         let place = rule.time_span.clone().unwrap_or(span);
         return Some(Finding::warning(plan, "W-PERSISTENCE", place, message).say(label, help));
     }
-    // Goals are rare before anything is learned, and so are accidents of the body and the end of one's patience.
+    // Goals are rare before anything is learned.
     let goal = plan.behaviour.fixed_value(index).is_some_and(|value| value > 0.0);
-    let row = |fact: &FactTrial| fact.id.map(FactId::fact);
-    let rare = |fact| row(fact).is_some_and(|row| row.reach == Reach::Accident);
-    let patience = |fact| row(fact).is_some_and(|row| row.group == "time");
-    if goal || seen.facts.iter().all(patience) || seen.facts.iter().any(rare) {
+    if goal || may_be_rare(&seen.facts) {
         return None;
     }
-    let read: Vec<String> = seen
-        .facts
-        .iter()
-        .map(|FactTrial { name, unit, least, greatest, .. }| match *unit {
-            "" if least == greatest => format!("{name} was always {}", *least > 0.5),
-            "" => format!("{name} was true and false"),
-            unit => format!("{name} was {least:.2} to {greatest:.2} {unit}"),
-        })
-        .collect();
-    let label = if read.is_empty() { "never held".to_owned() } else { read.join("; ") };
+    let label = readings(&seen.facts);
     let message = format!("{name} never fired in {steps} steps");
     let help = "check the threshold and that the world has what the rule is about";
     Some(Finding::warning(plan, "W-RULE-NEVER", span, message).say(label, help))
+}
+
+/// Whether a condition reads accidents of the body, or nothing but the end of one's patience.
+pub(super) fn may_be_rare(facts: &[FactTrial]) -> bool {
+    let row = |fact: &FactTrial| fact.id.map(FactId::fact);
+    let accident = |fact| row(fact).is_some_and(|row| row.reach == Reach::Accident);
+    let patience = |fact| row(fact).is_some_and(|row| row.group == "time");
+    facts.iter().all(patience) || facts.iter().any(accident)
+}
+
+/// What the facts of a condition were, in words.
+pub(super) fn readings(facts: &[FactTrial]) -> String {
+    let of = |FactTrial { name, unit, least, greatest, .. }: &FactTrial| match *unit {
+        "" if least == greatest => format!("{name} was always {}", *least > 0.5),
+        "" => format!("{name} was true and false"),
+        unit => format!("{name} was {least:.2} to {greatest:.2} {unit}"),
+    };
+    let read: Vec<String> = facts.iter().map(of).collect();
+    if read.is_empty() { "never held".to_owned() } else { read.join("; ") }
 }
 
 /// Whether an earlier rule that recovers does just the same: then it does not matter which of the two fires.

@@ -7,6 +7,7 @@ mod choice;
 mod exploit;
 mod finding;
 mod fired;
+mod guards;
 mod loops;
 mod model;
 mod mounts;
@@ -16,6 +17,7 @@ mod scale;
 mod setup;
 mod shadow;
 mod stages;
+mod starts;
 mod trial;
 mod units;
 mod verdict;
@@ -99,6 +101,8 @@ fn look(plan: &Plan, threads: usize, stop: &AtomicBool) -> Result<Report> {
                 outcome::check_goals_met(plan, &trial, &mut findings);
                 outcome::check_values(plan, &trial, &mut findings);
                 outcome::check_success(plan, threads, stop, &mut findings)?;
+                guards::check_guards(plan, &trial, stop, &mut findings)?;
+                starts::check_starts(plan, threads, stop, &mut findings)?;
                 exploits = Some(found);
             }
             // The script's own mistake is a finding like others; what a limit stopped is not.

@@ -11,11 +11,11 @@ use engine::random::{Random, Stream};
 use engine::robot::Robot;
 
 /// Steps with actions at random.
-const RANDOM_STEPS: u64 = 1_000;
+pub(super) const RANDOM_STEPS: u64 = 1_000;
 /// Steps of learning.
 const LEARNING_STEPS: u64 = 2_400;
 /// The seed of all trials.
-const SEED: u64 = 0x11_47;
+pub(super) const SEED: u64 = 0x11_47;
 
 /// One step of a trial.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,6 +70,12 @@ pub(super) struct FactTrial {
     pub unit: &'static str,
     pub least: f64,
     pub greatest: f64,
+}
+
+impl From<FactRead> for FactTrial {
+    fn from(FactRead { name, id, unit, value, .. }: FactRead) -> Self {
+        Self { name, id, unit, least: value, greatest: value }
+    }
 }
 
 /// What one drive left.
@@ -153,7 +159,7 @@ impl RuleTrial {
         self.values = Some((low.min(least), high.max(greatest)));
     }
 
-    fn read(&mut self, read: FactTrial) {
+    pub(super) fn read(&mut self, read: FactTrial) {
         match self.facts.iter_mut().find(|fact| fact.name == read.name) {
             Some(fact) => {
                 fact.least = fact.least.min(read.least);
@@ -221,10 +227,7 @@ fn look<R: Robot>(cycle: &Cycle<R>, recovered: bool, recovers: &[bool], rules: &
         forestalled |= *recovering && fired.is_some();
         // A rule that fires needs no explanation.
         if rule.fired == 0 {
-            for fact in judge.evidence(index).into_iter().flat_map(|part| part.facts) {
-                let FactRead { name, id, unit, value, .. } = fact;
-                rule.read(FactTrial { name, id, unit, least: value, greatest: value });
-            }
+            judge.evidence(index).into_iter().flat_map(|part| part.facts).for_each(|fact| rule.read(fact.into()));
         }
     }
 }

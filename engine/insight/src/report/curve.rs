@@ -13,7 +13,7 @@ use engine::stats::Sorted;
 pub(super) const WIDTH_PX: f64 = 1200.0;
 pub(super) const HEIGHT_PX: f64 = 700.0;
 /// Right end of the plot and of the legend.
-pub(super) const END_PX: f64 = WIDTH_PX - 40.0;
+const END_PX: f64 = WIDTH_PX - 40.0;
 /// Room for six digits and the title beside them.
 const LEFT_PX: f64 = 84.0;
 
@@ -80,7 +80,7 @@ pub(super) fn frame(sheet: &mut Sheet, data: &CurveData<'_>) -> Plot {
 }
 
 /// Draws values as a line that is broken where one is not finite; a lone value is a dot.
-pub(super) fn stroke(
+fn stroke(
     sheet: &mut Sheet,
     values: impl Iterator<Item = f64>,
     place: impl Fn(usize, f64) -> Spot,

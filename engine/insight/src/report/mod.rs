@@ -28,7 +28,7 @@ pub use atomic::write_atomic;
 pub use certainty::certainty_grid;
 pub use csv::{CurveRow, curve_csv};
 pub use curve::{CurveData, learning_curve};
-pub use curves::{CurveGroup, compared_curves};
+pub use curves::{CurveGroup, CurveStyle, compared_curves, has_bands};
 pub use disagreements::disagreements_csv;
 pub use frame::{FrameData, FramePanel, frame, snapshot_frame};
 pub use growth::{GrowthGroup, growth};

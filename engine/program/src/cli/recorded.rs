@@ -8,13 +8,13 @@ use super::{FilterSources, count};
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Exit status: 0 every step is the recorded one; 2 usage; 6 files and disk; 7 a step differs, or \
+    after_help = "Exit status: 0 every step is the recorded one; 2 usage; 6 files and disk; 7 something differs, or \
                         the stored run is damaged."
 )]
 pub(crate) struct ReplayArguments {
     /// The folder of one seed's run, such as runs/wall/1
     pub(crate) run: PathBuf,
-    /// Learn and test again from the seed alone, and compare every step, the table and the hashes
+    /// Learn, test and draw again from the seed alone, and compare every step, figure and file
     #[arg(long)]
     pub(crate) verify: bool,
     /// The steps of the test instead of those of learning

@@ -7,7 +7,9 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use engine::diagnostic::{Diagnostic, Result};
-use engine::experiment::{Overrides, Phase, Plan, Progress, RunLog, Spread, WINDOW_STEPS, in_parallel, run_seed};
+use engine::experiment::{
+    Overrides, Phase, Plan, Progress, RunLog, Spread, WINDOW_STEPS, in_parallel, run_only_seed, run_seed,
+};
 use insight::folder::{IfTaken, RunFolder, SeedResult};
 use insight::record::{check_recording, record};
 use pack::Runnable;
@@ -171,6 +173,7 @@ fn run_all(
         }
     };
     let told = InOrder::new(seeds);
+    let run_seed = if seeds.len() == 1 { run_only_seed } else { run_seed };
     let results = in_parallel(seeds, threads, |seed| {
         let (started, mut log) = (Instant::now(), RunLog::new(plan));
         let mut run = match run_seed(plan, seed, stop, &report, &mut log) {

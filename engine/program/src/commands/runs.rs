@@ -1,5 +1,6 @@
 //! `engine runs`: the runs that stand here, listed, tagged, pruned.
 
+use std::path::Path;
 use std::time::{Duration, SystemTime};
 
 use engine::diagnostic::printable;
@@ -13,7 +14,7 @@ const DAY_S: u64 = 24 * 60 * 60;
 pub(crate) fn run(arguments: &RunsArguments, console: &mut Console) -> Result<u8, ConsoleError> {
     match &arguments.command {
         None => {
-            let runs = runs_under(&arguments.folder)?;
+            let runs = looked(&arguments.folder, console)?;
             console.json(&runs)?;
             list(console, &runs)?;
         }
@@ -25,7 +26,7 @@ pub(crate) fn run(arguments: &RunsArguments, console: &mut Console) -> Result<u8
             }
         }
         Some(RunsCommand::Prune { folder, older, failed, yes }) => {
-            let runs = runs_under(folder)?;
+            let runs = looked(folder, console)?;
             let going: Vec<ShelvedRun> = runs
                 .into_iter()
                 .filter(|run| run.tag.is_none() && (!failed || run.success != Some(true)))
@@ -46,6 +47,13 @@ pub(crate) fn run(arguments: &RunsArguments, console: &mut Console) -> Result<u8
         }
     }
     Ok(0)
+}
+
+/// The runs; folders that cannot be read are named beside them.
+fn looked(folder: &Path, console: &Console) -> Result<Vec<ShelvedRun>, ConsoleError> {
+    let shelf = runs_under(folder)?;
+    shelf.unread.iter().for_each(|why| console.note(&format!("left out: {}", why.message)));
+    Ok(shelf.runs)
 }
 
 fn is_older(run: &ShelvedRun, days: Option<u64>) -> bool {

@@ -1,13 +1,14 @@
-//! `engine replay --verify`: learned and tested again from the seed alone, and every step and every figure compared.
+//! `engine replay --verify`: learned, tested and drawn again from the seed alone, and every step, figure and file compared.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use engine::diagnostic::{Diagnostic, Result};
-use engine::experiment::{Decider, Learned, Overrides, Plan, RunLog, Spread, Summary, run_seed};
+use engine::diagnostic::{Diagnostic, Result, printable};
+use engine::experiment::{Decider, Learned, Overrides, Plan, RunLog, SeedRun, Spread, Summary, run_only_seed};
 use engine::filter::Catalogue;
-use insight::folder::{CURVE_FILE, curve_of};
+use insight::folder::{CURVE_FILE, Redrawn, RunFolder, SeedResult, curve_of};
+use insight::lint::check_behaviour_until;
 use insight::store::{
     LOG_FILE, POLICY_FILE, RUN_FILE, RecordedRun, SUMMARY_FILE, policy_to_toml, read_stored, seed_folders,
 };
@@ -42,29 +43,40 @@ pub(super) fn verify(
     let (stop, seeds) = (on_ctrl_c()?, seed_folders(folder));
     if seeds.is_empty() || folder.join(LOG_FILE).exists() {
         let Some(again) = verify_seed(folder, filters, &stop)? else { return Ok(INTERRUPTED) };
+        let drawn = again.shown.map(|(plan, result)| compare_drawn(folder, &plan, &[result], &stop)).transpose()?;
+        if stop.load(Ordering::Relaxed) {
+            return Ok(INTERRUPTED);
+        }
         console.json(&again.verified)?;
-        print(console, &again.verified)?;
-        return Ok(0);
+        return print(console, &again.verified, &drawn.unwrap_or_default()).map(|()| 0);
     }
-    let (mut summaries, mut verified) = (Vec::new(), Vec::new());
+    let (mut summaries, mut verified, mut shown) = (Vec::new(), Vec::new(), Vec::new());
     for (seed, folder) in seeds {
         let Some(again) = verify_seed(&folder, filters, &stop)? else { return Ok(INTERRUPTED) };
         console.line(&format!("seed {seed}: the same"))?;
         summaries.extend(again.written);
         verified.push(again.verified);
+        // The page reads the logs from their files again.
+        shown.extend(again.shown.map(|(plan, result)| (plan, SeedResult { log: None, ..result })));
     }
     let spread = as_json(&Spread::new(summaries))?;
     compare_values(folder, &read_json(&folder.join(SUMMARY_FILE))?, &spread)?;
+    let (mut plans, results): (Vec<Plan>, Vec<SeedResult>) = shown.into_iter().unzip();
+    let drawn = plans.pop().map(|plan| compare_drawn(folder, &plan, &results, &stop)).transpose()?.unwrap_or_default();
+    if stop.load(Ordering::Relaxed) {
+        return Ok(INTERRUPTED);
+    }
     console.json(&verified)?;
     console.line(&format!("reproduced bit for bit: {} seeds, and every figure above them", verified.len()))?;
-    console.line(NOT_COMPARED)?;
+    print_drawn(console, &drawn)?;
     Ok(0)
 }
 
-/// What one seed came to, and its figures as they were written.
+/// What one seed came to, its figures as they were written, and what its pictures show; nothing of a run that failed.
 struct Again {
     verified: Verified,
     written: Option<Summary>,
+    shown: Option<(Plan, SeedResult)>,
 }
 
 /// One seed; nothing if it was stopped.
@@ -82,28 +94,28 @@ fn verify_seed(folder: &Path, filters: &Arc<Catalogue>, stop: &AtomicBool) -> Re
     };
     let plan = plan.clone().with_changes(&steps)?;
     let mut again = RunLog::new(&plan);
-    let (learned, figures, state_hash) = match run_seed(&plan, seed, stop, &|_| (), &mut again) {
-        Ok(run) => (run.learned, Some(run.summary.clone()), run.summary.state_hash),
+    let (run, broken) = match run_only_seed(&plan, seed, stop, &|_| (), &mut again) {
+        Ok(run) => (Some(run), None),
         // A run that a failure ended fails again, at the same step.
-        Err(broken) if summary.is_none() => {
-            let state_hash = broken.learned.as_ref().map_or_else(String::new, |learned| learned.state_hash.clone());
-            (broken.learned, None, state_hash)
-        }
+        Err(broken) if summary.is_none() => (None, broken.learned),
         Err(broken) => return Err(broken.error),
     };
+    let learned = run.as_ref().map_or(broken.as_ref(), |run| run.learned.as_ref());
     if stop.load(Ordering::Relaxed) {
         return Ok(None);
     }
     compare_logs(&log, &again)?;
-    if let (Decider::Learned(policy), Some(learned)) = (&stored.decider, &learned)
+    if let (Decider::Learned(policy), Some(learned)) = (&stored.decider, learned)
         && learned.policy != *policy
     {
         return differs("the table in policy.toml").fail();
     }
-    if let (Some(written), Some(figures)) = (&summary, &figures) {
-        compare_figures(folder, written, figures)?;
+    if let (Some(written), Some(run)) = (&summary, &run) {
+        compare_figures(folder, written, &run.summary)?;
     }
-    compare_files(folder, &plan, learned.as_ref())?;
+    compare_files(folder, &plan, learned)?;
+    let learned_hash = || learned.map_or_else(String::new, |learned| learned.state_hash.clone());
+    let state_hash = run.as_ref().map_or_else(learned_hash, |run| run.summary.state_hash.clone());
     let verified = Verified {
         behaviour: plan.behaviour.name().to_owned(),
         seed,
@@ -113,18 +125,49 @@ fn verify_seed(folder: &Path, filters: &Arc<Catalogue>, stop: &AtomicBool) -> Re
         log_sha256: again.sha256(),
         state_hash,
     };
-    Ok(Some(Again { verified, written: summary }))
+    // What is drawn of a run that was stopped is drawn of its own figures, and of the steps that were asked for.
+    let shown = run.zip(summary.clone()).map(|(run, summary)| {
+        let run = SeedRun { summary, ..run };
+        (stored.plan.clone(), SeedResult { run, log: Some(again) })
+    });
+    Ok(Some(Again { verified, written: summary, shown }))
 }
 
-/// What is for people alone.
-const NOT_COMPARED: &str = "           pictures and report.html are drawn from these, and are not compared";
+/// Draws pictures and pages again.
+fn compare_drawn(folder: &Path, plan: &Plan, results: &[SeedResult], stop: &AtomicBool) -> Result<Redrawn> {
+    let of_run = RunFolder::of_run(folder, !folder.join(LOG_FILE).exists());
+    let checked = if of_run.shows_check() { check_behaviour_until(plan, 0, stop)? } else { None };
+    let redrawn = of_run.redraw(plan, results, checked.as_ref())?;
+    if redrawn.different.is_empty() || stop.load(Ordering::Relaxed) {
+        return Ok(redrawn);
+    }
+    let folder = printable(&folder.display().to_string());
+    let message = format!("'{folder}' shows what the run does not: drawn again, {} differs", named(&redrawn.different));
+    let help = "steps and figures come out as they were recorded, so it was changed after the run, or drawn by another \
+                engine than this one: see 'engine' in run.toml, and run it again";
+    Diagnostic::new("E-LOG-DIFFERS", message).help(help).fail()
+}
 
-fn print(console: &mut Console, verified: &Verified) -> std::result::Result<(), ConsoleError> {
+fn named(files: &[PathBuf]) -> String {
+    let names: Vec<String> = files.iter().map(|file| printable(&file.display().to_string())).collect();
+    names.join(", ")
+}
+
+fn print_drawn(console: &mut Console, drawn: &Redrawn) -> std::result::Result<(), ConsoleError> {
+    let Redrawn { same, missing, .. } = drawn;
+    console.line(&format!("drawn:     {same} pictures and pages again, each the same byte for byte"))?;
+    if missing.is_empty() {
+        return Ok(());
+    }
+    console.line(&format!("           not there, so not compared: {}", named(missing)))
+}
+
+fn print(console: &mut Console, verified: &Verified, drawn: &Redrawn) -> std::result::Result<(), ConsoleError> {
     console.line(&format!(
         "reproduced bit for bit: {} steps of learning and {} of the test, and every figure",
         verified.learning_steps, verified.test_steps
     ))?;
-    console.line(NOT_COMPARED)?;
+    print_drawn(console, drawn)?;
     console.line(&format!("log:       sha256 {}", verified.log_sha256))?;
     console.line(&format!("state:     sha256 {}", verified.state_hash))
 }

@@ -29,6 +29,13 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          If a crash is no goal, write 'then fail'.",
     ),
     (
+        "W-GUARD-NEVER",
+        Kind::Input,
+        "What a guard asks for never held in some thousand steps, driven at random and by what was learned so far.\n\
+         A guard that never holds forbids nothing. The label says what its facts were; accidents (contact, a fall) and time limits \
+         may be rare and are not reported. Check the threshold, and that the world has what the guard is about.",
+    ),
+    (
         "W-LOOP",
         Kind::Input,
         "A function goes over the beams of the laser one by one, in every step.\n\
@@ -93,6 +100,13 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
         Kind::Input,
         "No rule leaves a stage, and no rule ends it with a goal: once there, the robot stays in it until it fails.\n\
          Let a rule lead on, with then stage and a name, or end the attempt with then goal.",
+    ),
+    (
+        "W-START-NEVER",
+        Kind::Input,
+        "A script widens its starts, and while three robots learned for as long as it says, one start never came into use.\n\
+         What lies there is not learned, but tested. Put a start between it and the one before, ask for a lesser share, or learn \
+         for longer.",
     ),
     (
         "W-STATE-LARGE",

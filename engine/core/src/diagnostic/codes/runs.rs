@@ -33,7 +33,7 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
     (
         "E-LOG-DIFFERS",
         Kind::State,
-        "A recorded run was done again, and a step came out otherwise than it was recorded.\n\
+        "A recorded run was done again, and a step, a figure or a picture came out otherwise than it stands in the folder.\n\
          The same seed gives the same bytes with the same engine, filters and files, so one of them has \
          changed: run.toml names the engine that recorded it.\n\
          Build that version to see the old run, or run the behaviour again with this one.",

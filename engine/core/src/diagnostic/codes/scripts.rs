@@ -151,7 +151,8 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
         Kind::Input,
         "A truth value stands where a number belongs, or a number where something true or false belongs.\n\
          Facts such as robot.contact are true or false already: write robot.contact, not robot.contact == 1, which is never \
-         true. Two limits are two comparisons: 0.3 < laser.front && laser.front < 0.6.",
+         true. Two limits are two comparisons: 0.3 < laser.front && laser.front < 0.6.\n\
+         Constants that come to no number (NaN), or that lose a fraction in a division of whole numbers, are told too.",
     ),
     (
         "E-SCRIPT-USE",

@@ -2,6 +2,7 @@
 
 use super::super::Behaviour;
 use super::{fan, parse};
+use crate::diagnostic::Diagnostic;
 use crate::judge::rule::{Clause, CompiledRule};
 use crate::judge::{Facts, ViewFacts};
 use crate::random::{Random, Stream};
@@ -130,10 +131,19 @@ const HEAD: &str = "laser(#{ beams: 9, min_range_m: 0, max_range_m: 100 });
 fn native_rules_and_interpreted_rules_agree() {
     let mut writer = Writer { random: Random::new(5, Stream::Test) };
     let mut compared = 0;
+    let mut spare = parse(&format!("{HEAD} rule \"a\" when true => 1;")).unwrap().judge(0.5, fan(BEAMS)).unwrap();
     for _ in 0..1500 {
         let (flag, number) = (writer.flag(2), writer.number(2));
         let native = parse(&format!("{HEAD} rule \"a\" when {flag} => {number};"));
         let interpreted = parse(&format!("{HEAD} rule \"a\" when same({flag}) => same({number});"));
+        // What is no number whatever is measured is refused; its facts are drawn all the same.
+        let no_number = |wrong: &Diagnostic| wrong.message == "this gives no number";
+        if let Err(wrong) = &native
+            && no_number(wrong)
+            && wrong.others.iter().all(no_number)
+        {
+            (0..4).for_each(|_| writer.facts(spare.facts_mut()));
+        }
         let (Ok(native), Ok(interpreted)) = (native, interpreted) else { continue };
         let mut judges = [native.judge(0.5, fan(BEAMS)).unwrap(), interpreted.judge(0.5, fan(BEAMS)).unwrap()];
         for _ in 0..4 {

@@ -82,3 +82,54 @@ fn what_is_right_or_cannot_be_known_is_let_through() {
     parse("fn near(x) { x < 1.0 } rule \"a\" when near(laser.front) == true => 1;").unwrap();
     parse("fn reward(facts) { let hit = facts.robot.contact; let n = if hit { 1 } else { 0 }; if n == 1 { -1 } else { 0 } }").unwrap();
 }
+
+#[test]
+fn a_constant_that_is_true_or_false_is_no_number_in_a_rule_and_at_the_top_level() {
+    let rule = "when laser.front < 1.0 => -1 then fail;";
+    for text in [
+        "const HIT = true; rule \"a\" when HIT > 0 && laser.front < 1.0 => -1 then fail;".to_owned(),
+        format!("const HIT = true; const BAD = HIT > 0; rule \"a\" {rule}"),
+        format!("const HIT = true; camera(#{{ own_body: HIT > 0 }}); rule \"a\" {rule}"),
+    ] {
+        assert_eq!(wrong(&text).1, "> 0", "{text}");
+    }
+}
+
+#[test]
+fn constants_that_come_to_no_number_are_told_where_they_are_written() {
+    for (text, marked) in [
+        ("const V = 0.0 / 0.0; rule \"a\" when laser.front < 1.0 => V then fail;", "0.0 / 0.0"),
+        ("const V = -1.0; rule \"a\" when laser.front < sqrt(V) => -1 then fail;", "sqrt(V)"),
+        ("rule \"a\" when laser.front < 1.0 => 1.0 + ln(-2.0) then fail;", "1.0 + ln(-2.0)"),
+        ("rule \"a\" when laser.front < 1.0 => sqrt(-1.0) + laser.left then fail;", "sqrt(-1.0)"),
+        ("const V = 2.0; fn reward(facts) { facts.laser.front * asin(V) }", "asin(V)"),
+    ] {
+        let (message, found, _) = wrong(text);
+        assert_eq!((message.as_str(), found.as_str()), ("this gives no number", marked), "{text}");
+    }
+}
+
+#[test]
+fn whole_constants_whose_division_drops_a_fraction_are_told() {
+    let rule = "rule \"a\" when laser.front < 1.0 => -1 then fail;";
+    for (text, help) in [
+        ("let a = 1; let b = 2; rule \"a\" when laser.front < a/b => -1 then fail;".to_owned(), "write 1.0 * a / b"),
+        ("const A = 7; fn reward(facts) { A / 2 * facts.laser.front }".to_owned(), "write A / 2.0"),
+        (format!("let a = 1; let b = 2; let c = a / b; {rule}"), "write 1.0 * a / b"),
+        (format!("const A = 7; camera(#{{ tilt_deg: A / 2 }}); {rule}"), "write A / 2.0"),
+        (format!("const A = 7; success \"s\" when test.laps > A / 2; {rule}"), "write A / 2.0"),
+    ] {
+        let (message, found, given) = wrong(&text);
+        assert_eq!(message, "a division of whole numbers drops the fraction", "{text}");
+        assert_eq!((found.as_str(), given.as_str()), ("/", help), "{text}");
+    }
+    // No fraction, a variable that changes, a function's own variable.
+    for text in [
+        "const A = 8; rule \"a\" when laser.front < A / 2 - 3.5 => -1 then fail;",
+        "let a = 8; let c = a / 2; a = 7; rule \"a\" when laser.front < 1.0 => -1.0 * c then fail;",
+        "const A = 7; fn reward(facts) { let A = 8; A / 2 * facts.laser.front }",
+        "const FAR = 1.0 / 0.0; fn reward(facts) { min(FAR, facts.laser.front) }",
+    ] {
+        parse(text).unwrap();
+    }
+}

@@ -113,9 +113,11 @@ function setPhase(phase) {
   }
   const { test, verdict } = seed;
   const success = { true: 'success', false: 'no success', null: 'success cannot be told' };
+  const all = Seeds.words(app.doc);
   $('verdict').hidden = !verdict;
   $('verdict').replaceChildren(...(verdict ? [
-    el('p', {}, el('b', { text: success[verdict.success] }), ...(verdict.success ? [] : [`: ${verdict.text.replace(/^(no: |cannot be told:? )/, '')}`])),
+    ...(all ? [el('p', { class: 'all' }, el('b', { text: all }))] : []),
+    el('p', {}, ...(all ? [`shown is seed ${seed.seed}: `] : []), el('b', { text: success[verdict.success] }), ...(verdict.success ? [] : [`: ${verdict.text.replace(/^(no: |cannot be told:? )/, '')}`])),
     el('ul', {}, ...verdict.conditions.map((one) => el('li', { class: one.holds ? 'holds' : 'fails', title: one.condition },
       el('b', { text: `${one.holds ? '✓' : '✗'} ${one.name}` }), ` ${one.figures}`))),
   ] : []));

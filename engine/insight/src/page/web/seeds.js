@@ -37,6 +37,16 @@ class Seeds {
     );
   }
 
+  /** What all seeds came to, in words; nothing of one alone. */
+  static words(doc) {
+    const tested = doc.seeds.filter((seed) => seed.test);
+    if (tested.length < 2) return '';
+    const won = tested.filter((seed) => seed.verdict?.success).length;
+    const fails = [...tested].sort((a, b) => a.test.failures_per_1000 - b.test.failures_per_1000);
+    const [median, worst] = [fails[fails.length >> 1], fails.at(-1)];
+    return `${won} of ${tested.length} seeds are a success; failures in 1,000 steps: median ${short(median.test.failures_per_1000)}, worst ${short(worst.test.failures_per_1000)} (seed ${worst.seed})`;
+  }
+
   /** Marks the seed that is shown. */
   now(index) {
     for (const [at, row] of this.rows) row.classList.toggle('now', at === index);

@@ -1,0 +1,77 @@
+//! What a run's folder shows to people, drawn again and compared with what stands there.
+
+use std::path::{Path, PathBuf};
+
+use super::pages::PAGE_FILE;
+use super::{RunFolder, SeedResult};
+use crate::lint::Report;
+use engine::diagnostic::{Diagnostic, Result};
+use engine::experiment::Plan;
+
+/// The pictures and pages of a run, beside those that come out of it.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Redrawn {
+    /// How many are the same, byte for byte.
+    pub same: usize,
+    /// Those that differ, as paths within the folder.
+    pub different: Vec<PathBuf>,
+    /// Those that are not there, as paths within the folder.
+    pub missing: Vec<PathBuf>,
+}
+
+impl RunFolder {
+    /// The folder of a run that is done; `many` if each seed has a folder of its own in it.
+    #[must_use]
+    pub fn of_run(path: &Path, many: bool) -> Self {
+        Self { path: path.to_owned(), logs: path.to_owned(), many }
+    }
+
+    /// Whether its page shows what a check of the script found.
+    #[must_use]
+    pub fn shows_check(&self) -> bool {
+        let pages = crate::store::seed_folders(&self.path).into_iter().map(|(_, folder)| folder);
+        let mut pages = pages.chain([self.path.clone()]).filter_map(|of| std::fs::read(of.join(PAGE_FILE)).ok());
+        pages.any(|page| !page.windows(UNCHECKED.len()).any(|bytes| bytes == UNCHECKED))
+    }
+
+    /// Draws everything again, as [`Self::write`] did, and compares it. Nothing in the folder changes.
+    ///
+    /// # Errors
+    /// If something cannot be drawn, a log not be read, or a folder for scratch not be made.
+    pub fn redraw(&self, plan: &Plan, results: &[SeedResult], checked: Option<&Report>) -> Result<Redrawn> {
+        let disk = |error: &std::io::Error| Diagnostic::disk("make a folder in", &std::env::temp_dir(), error);
+        let scratch = tempfile::tempdir().map_err(|error| Box::new(disk(&error)))?;
+        let again = Self { path: scratch.path().to_owned(), logs: self.path.clone(), many: self.many };
+        again.show(plan, results, checked)?;
+        let mut redrawn = Redrawn::default();
+        for file in files(scratch.path(), Path::new(""))? {
+            let read = |folder: &Path| std::fs::read(folder.join(&file));
+            match (read(&self.path), read(scratch.path())) {
+                (Err(error), _) if error.kind() == std::io::ErrorKind::NotFound => redrawn.missing.push(file),
+                (Ok(old), Ok(new)) if old == new => redrawn.same += 1,
+                _ => redrawn.different.push(file),
+            }
+        }
+        Ok(redrawn)
+    }
+}
+
+/// Stands in the data of a page without a check; in a text of the data it would have backslashes.
+const UNCHECKED: &[u8] = br#""checked":null"#;
+
+/// All files under a folder, in the order of their names.
+fn files(folder: &Path, within: &Path) -> Result<Vec<PathBuf>> {
+    let disk = |error: std::io::Error| Box::new(Diagnostic::disk("read the folder", folder, &error));
+    let entries = std::fs::read_dir(folder.join(within)).and_then(Iterator::collect::<std::io::Result<Vec<_>>>);
+    let mut found = Vec::new();
+    for entry in entries.map_err(disk)? {
+        let path = within.join(entry.file_name());
+        if folder.join(&path).is_dir() {
+            found.extend(files(folder, &path)?);
+        } else {
+            found.push(path);
+        }
+    }
+    found.sort();
+    Ok(found)
+}
