@@ -2,6 +2,7 @@
 
 use super::view_names::ViewNames;
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, nearest_name, printable};
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::Path;
 
@@ -100,6 +101,33 @@ pub(super) struct Code {
     pub plain: String,
     /// The views that it names.
     pub views: ViewNames,
+    /// The names that it defines: variables, functions and their arguments.
+    own: BTreeSet<String>,
+}
+
+/// The names that a text without comments and quotes defines.
+fn defined(plain: &str) -> BTreeSet<String> {
+    let part = |c: char| c.is_alphanumeric() || c == '_';
+    let words = |text: &str| -> Vec<String> {
+        text.split(|c: char| !part(c)).filter(|word| !word.is_empty()).map(str::to_owned).collect()
+    };
+    let mut own = BTreeSet::new();
+    let (mut rest, mut last) = (plain, "");
+    while let Some(start) = rest.find(part) {
+        let (gap, tail) = rest.split_at(start);
+        let (word, after) = tail.split_at(tail.find(|c: char| !part(c)).unwrap_or(tail.len()));
+        let follows = !gap.is_empty() && gap.trim().is_empty();
+        if follows && matches!(last, "let" | "const" | "fn" | "for") {
+            own.insert(word.to_owned());
+        }
+        if follows && last == "fn" {
+            let arguments = after.trim_start().strip_prefix('(').unwrap_or_default();
+            let end = arguments.find(['(', ')', '{', '}', ';']).unwrap_or(arguments.len());
+            own.extend(words(&arguments[..end]));
+        }
+        (rest, last) = (after, word);
+    }
+    own
 }
 
 /// Checks a script's characters, comments and quotes.
@@ -121,7 +149,8 @@ pub(super) fn check_text(source: SourceText) -> Result<Code> {
         None => source.text.to_string(),
     };
     let plain = plain_code(&source, &parsed)?;
-    let code = Code { source, parsed, plain, views: ViewNames::default() };
+    let own = defined(&plain);
+    let code = Code { source, parsed, plain, views: ViewNames::default(), own };
     Ok(Code { views: ViewNames::of(&code), ..code })
 }
 
@@ -260,20 +289,7 @@ impl Code {
 
     /// Whether the script defines a name itself, as a variable, a function or one of its arguments: then the word is its own.
     pub(super) fn defines(&self, name: &str) -> bool {
-        let part = |c: char| c.is_alphanumeric() || c == '_';
-        self.plain.match_indices(name).any(|(at, _)| {
-            let (before, after) = (&self.plain[..at], &self.plain[at + name.len()..]);
-            let whole = !before.ends_with(part) && !after.starts_with(part);
-            let word = before.trim_end().rsplit(|c: char| !part(c)).next().unwrap_or_default();
-            let spaced = before.ends_with(char::is_whitespace);
-            let defined = spaced && matches!(word, "let" | "const" | "fn" | "for");
-            let argument = || {
-                let open = before.rfind(['(', ')', '{', '}', ';']).unwrap_or(0);
-                let head = before[..open].trim_end().trim_end_matches(part).trim_end();
-                before[open..].starts_with('(') && head.ends_with("fn")
-            };
-            whole && (defined || argument())
-        })
+        self.own.contains(name)
     }
 
     /// The bytes of the name of a function where it is defined.
