@@ -15,6 +15,7 @@ use super::recording::Recording;
 use super::scene::{WORLD, pose, turned, update};
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Ledger, Phase, Plan, Playback, Snapshot, Step};
+use engine::robot::Robot;
 
 /// The names of the coordinate frames of the robot and of its laser.
 const ROBOT: &str = "robot";

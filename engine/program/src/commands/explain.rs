@@ -132,12 +132,7 @@ fn print(console: &mut Console, plan: &Plan, report: &StepReport) -> std::result
         reasons.step,
         short(reasons.time_s)
     ))?;
-    if let Some(world) = &reasons.world_name {
-        console.line(&format!("world:     {}", printable(world)))?;
-    }
-    for (key, value) in &reasons.drawn {
-        console.line(&format!("drawn:     {} = {value}", printable(key)))?;
-    }
+    print_attempt(console, reasons)?;
     for param in plan.behaviour.params() {
         console.line(&format!("parameter: {} = {}", printable(&param.name), param.shown()))?;
     }
@@ -175,12 +170,7 @@ fn print(console: &mut Console, plan: &Plan, report: &StepReport) -> std::result
     if let Some([x_m, y_m, _]) = reasons.prey {
         console.line(&format!("prey:      x {x_m:.2} m, y {y_m:.2} m"))?;
     }
-    let to = reasons.to.as_ref().map_or(String::new(), |to| format!(" to \"{}\"", printable(to)));
-    let after = match (reasons.recover, reasons.hop) {
-        (true, _) => format!(", then recovery{to}"),
-        (false, true) => ", then a hop: the attempt is broken off here, which is no outcome".to_owned(),
-        (false, false) => String::new(),
-    };
+    let after = after(reasons);
     console.line(&format!("reward:    {}{after}", short(reasons.reward)))?;
     for rule in reasons.rules.iter().filter(|rule| rule.added.is_some()) {
         console.line("")?;
@@ -205,6 +195,27 @@ fn print_used(console: &mut Console, used: &UseReasons) -> std::result::Result<(
     let why = if read.is_empty() { String::new() } else { format!(", since {}", facts(read)) };
     let UseReasons { name, line, state, text, .. } = used;
     console.line(&format!("use:       \"{}\" (line {line}) drives{why}; its state {state}: {text}", printable(name)))
+}
+
+/// In which world a step was done, and what was drawn for its attempt.
+fn print_attempt(console: &mut Console, reasons: &StepReasons) -> std::result::Result<(), ConsoleError> {
+    if let Some(world) = &reasons.world_name {
+        console.line(&format!("world:     {}", printable(world)))?;
+    }
+    for (key, value) in &reasons.drawn {
+        console.line(&format!("drawn:     {} = {value}", printable(key)))?;
+    }
+    Ok(())
+}
+
+/// What followed on a step.
+fn after(reasons: &StepReasons) -> String {
+    let to = reasons.to.as_ref().map_or(String::new(), |to| format!(" to \"{}\"", printable(to)));
+    match (reasons.recover, reasons.hop) {
+        (true, _) => format!(", then recovery{to}"),
+        (false, true) => ", then a hop: the attempt is broken off here, which is no outcome".to_owned(),
+        (false, false) => String::new(),
+    }
 }
 
 /// What guards took away when the action was chosen, and why.
