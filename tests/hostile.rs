@@ -32,7 +32,7 @@ fn refused() -> Vec<(&'static str, String)> {
     vec![
         ("E-SCRIPT-LIMIT", averages(65)),
         ("E-SCRIPT-LIMIT", each(33, |i| format!("measure m{i} = laser.at({i});\n")) + HIT),
-        ("E-SCRIPT-LIMIT", each(257, |i| format!("rule \"r{i}\" when laser.front < 0.{i:03} => -1;\n"))),
+        ("E-SCRIPT-LIMIT", each(257, |i| format!("rule \"r{i}\" when laser.front < 0.{} => -1;\n", 300 + i))),
         ("E-SCRIPT-LIMIT", format!("{HIT}{}", each(17, |i| format!("success \"s{i}\" when test.laps > {i};\n")))),
         ("E-SCRIPT-LIMIT", views(9) + HIT),
         ("E-SCRIPT-LIMIT", format!("rule \"x\" when {} < 0.5 => -1 then fail;\n", sum(5000))),

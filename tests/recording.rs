@@ -29,13 +29,26 @@ mod with_recording {
         let output = Command::new(python).arg(reader).arg(bench.path().join("run.mcap")).output().unwrap();
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let read: Value = serde_json::from_slice(&output.stdout).unwrap();
-        // 800 steps of learning and 400 of the test, two images every 100; the world and the laser's place once for each phase.
-        let counts = [("/scan", 1200), ("/step", 1200), ("/tf", 1202), ("/camera", 12), ("/mask", 12), ("/world", 2)];
+        // 800 steps of learning and 400 of the test, two images every 100, each with the camera's place and lens; the world and
+        // the laser's place once for each phase.
+        let counts = [
+            ("/scan", 1200),
+            ("/step", 1200),
+            ("/tf", 1214),
+            ("/camera", 12),
+            ("/calibration", 12),
+            ("/mask", 12),
+            ("/world", 2),
+        ];
         for (topic, count) in counts {
             assert_eq!(read["counts"][topic], count, "{topic}");
         }
         assert_eq!(read["schemas"]["/scan"], "foxglove.LaserScan");
         assert_eq!(read["schemas"]["/camera"], "foxglove.CompressedImage");
+        assert_eq!((&read["camera"], &read["calibrated"]), (&"camera".into(), &"camera".into()));
+        // 160 x 120 pixels over 80 degrees: 80 / tan 40, and the middle where pixels begin at 0.
+        let [focal, x, y] = [0, 2, 5].map(|at| read["k"][at].as_f64().unwrap());
+        assert!((focal - 95.340).abs() < 0.01 && (x, y) == (79.5, 59.5), "{focal} {x} {y}");
         assert_eq!((&read["beams"], &read["png"]), (&181.into(), &true.into()));
         assert_eq!(read["last"]["phase"], "test");
         let summary: Value = serde_json::from_str(&bench.read("out/summary.json")).unwrap();

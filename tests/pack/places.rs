@@ -109,9 +109,29 @@ mod registry {
         }
         other.ok(&["pack", "install", &format!("{address}:0.1.0")]);
         let text = other.failure(&["pack", "pull", &format!("{address}:9.9.9")]);
-        assert!(text.starts_with("exit status 6\nerror[E-PACK-NETWORK]"), "{text}");
+        assert!(text.starts_with("exit status 3\nerror[E-PACK-VERSION]"), "{text}");
+        assert!(text.contains("there are: 0.1.0\n"), "{text}");
         let wrong = format!("oci://{}/ada/short@sha256:{}", registry.host, "0".repeat(64));
-        assert!(other.failure(&["pack", "pull", &wrong]).contains("E-PACK-NETWORK"));
+        assert!(other.failure(&["pack", "pull", &wrong]).contains("E-PACK-VERSION"));
+        let nobody = format!("oci://{}/nobody/nothing:1.0.0", registry.host);
+        assert!(other.failure(&["pack", "pull", &nobody]).contains("E-PACK-NETWORK"));
+    }
+
+    #[test]
+    fn bytes_that_were_changed_in_the_registry_are_refused() {
+        let bench = Bench::new();
+        let Some(registry) = start(&bench) else { return };
+        let file = signed_pack(&bench, "ada/short");
+        let address = format!("oci://{}/ada/short", registry.host);
+        bench.ok(&["pack", "push", &file, &address]);
+        let blob = pack::Pack::load(&bench.path().join(&file)).unwrap().blob().to_string();
+        let kept = format!("registry/docker/registry/v2/blobs/sha256/{}/{blob}/data", &blob[..2]);
+        let mut bytes = std::fs::read(bench.path().join(&kept)).unwrap();
+        *bytes.last_mut().unwrap() ^= 1;
+        bench.write(&kept, bytes);
+        let text = bench.failure(&["pack", "pull", &format!("{address}:0.1.0"), "--out", "got"]);
+        assert!(text.starts_with("exit status 5\nerror[E-PACK-BYTES]"), "{text}");
+        assert!(!bench.path().join("got").exists());
     }
 
     #[test]
@@ -132,6 +152,8 @@ mod registry {
         let from = format!("docker://{}/ada/short:0.1.0", registry.host);
         let raw = skopeo(&["inspect", "--raw", "--tls-verify=false", &from]);
         assert!(raw.contains("application/vnd.engine.pack.v1.tar"), "{raw}");
+        // The file's name stands on the layer too, where other clients look for it.
+        assert_eq!(raw.matches("ada-short-0.1.0.pack").count(), 2, "{raw}");
         skopeo(&["copy", "--src-tls-verify=false", &from, "dir:copied"]);
         let blob = pack::Pack::load(&bench.path().join(&file)).unwrap().blob().to_string();
         assert!(

@@ -1,17 +1,19 @@
 //! One step of the robot, the order of which is the order of the folders: act, sense, filter, state, judge.
 
+mod shown;
+
 use crate::allowed::Allowed;
 use crate::diagnostic::{Diagnostic, Result};
 use crate::geometry::Twist;
-use crate::judge::{Facts, Judge, Judgement, Leave, NO_ACTION};
+use crate::judge::{Judge, Judgement, Leave, NO_ACTION};
 use crate::outcome::Ending;
 use crate::robot::{Ended, Robot};
 use crate::sensors::observation::{Image, Observation};
-use crate::state::{Grid, StateMap};
+use crate::state::StateMap;
 
 use super::co_driver::CoDrivers;
 use super::telling::{LaserTold, StepTold, tell};
-use super::{Eyes, Hand, Plan, SeenView, Step, ViewStage};
+use super::{Eyes, Hand, Plan, Step};
 use filter_api::Format;
 
 /// In a script without goals, an attempt of so many steps went well.
@@ -338,70 +340,6 @@ impl<R: Robot> Cycle<R> {
         let twist = self.actions.get(action).copied().unwrap_or_default();
         let told = StepTold { action, twist, step, since_recovery: self.since_recovery, state: self.states[0] };
         tell(&mut self.judge, &mut self.eyes[0], &self.observation, self.laser, told);
-    }
-
-    /// By rule: what each added in the last step, if it fired.
-    #[must_use]
-    pub fn fired(&self) -> &[Option<f64>] {
-        self.judge.fired()
-    }
-
-    /// The beam behind the last rule that fired in the last step, if it read the laser.
-    #[must_use]
-    pub(crate) fn fired_beam(&self) -> Option<usize> {
-        self.judge.fired_beam()
-    }
-
-    /// What judged the last step.
-    #[must_use]
-    pub fn judge(&self) -> &Judge {
-        &self.judge
-    }
-
-    /// What the script was told in the last step.
-    #[must_use]
-    pub fn facts(&self) -> &Facts {
-        self.judge.facts()
-    }
-
-    /// The robot behind the door.
-    #[must_use]
-    pub fn robot(&self) -> &R {
-        &self.robot
-    }
-
-    /// The last observation.
-    #[must_use]
-    pub fn observation(&self) -> &Observation {
-        &self.observation
-    }
-
-    /// What each of the script's own views made of the last image.
-    pub fn views(&self) -> impl Iterator<Item = SeenView> {
-        self.eyes[0].views()
-    }
-
-    /// The last mask of the script's own filters.
-    #[must_use]
-    pub fn mask(&self) -> &[u8] {
-        self.eyes[0].chain().mask()
-    }
-
-    /// What each of the script's own filters made of the last image, view by view, in order.
-    pub fn stages(&self) -> impl Iterator<Item = ViewStage<'_>> {
-        self.eyes[0].stages()
-    }
-
-    /// The map that makes the script's own states.
-    #[must_use]
-    pub fn state_map(&self) -> &dyn StateMap {
-        &*self.eyes[0].map
-    }
-
-    /// The script's own grid, with its last counts.
-    #[must_use]
-    pub fn grid(&self) -> &Grid {
-        self.eyes[0].grid()
     }
 }
 

@@ -99,9 +99,6 @@ pub(crate) fn unknown_fact(
         return only_the_simulator_knows(source, offset(source, position), key, help);
     }
     let other = OTHER_NAMES.iter().find(|(wrong, right)| *wrong == key && names.contains(right)).map(|row| row.1);
-    // `bearing` for `bearing_deg`.
-    let whole = names.iter().find(|name| name.strip_prefix(key).is_some_and(|rest| rest.starts_with('_'))).copied();
-    let near = near.or(whole);
     let setting = setting_of(group, key);
     if let Some((key, default)) = setting.as_ref().filter(|_| near.or(other).is_none()) {
         let message = format!("'{group}.{key}' is a setting: a rule cannot read it");
@@ -110,12 +107,14 @@ pub(crate) fn unknown_fact(
     }
     let message = format!("'{group}' has no fact '{}'", printable(key));
     let diagnostic = mistake(source, "E-SCRIPT-FACT", position, message, "not known");
-    match (near.or(other), setting) {
-        (Some(near), Some((key, _))) if names.contains(&key) => diagnostic.help(format!("did you mean '{near}' or '{key}'?")),
-        (Some(near), Some((key, default))) => diagnostic.help(format!(
+    // `bearing` for `bearing_deg`.
+    let whole = names.iter().find(|name| name.strip_prefix(key).is_some_and(|rest| rest.starts_with('_'))).copied();
+    match (near.or(other).or(whole), setting) {
+        (Some(near), Some((key, _))) if near != key && names.contains(&key) => diagnostic.help(format!("did you mean '{near}' or '{key}'?")),
+        (Some(near), Some((key, default))) if near != key => diagnostic.help(format!(
             "did you mean '{near}'? '{group}.{key}' is a setting, which a rule cannot read: write its value, {default} by default"
         )),
-        (Some(near), None) => diagnostic.help(format!("did you mean '{near}'?")),
+        (Some(near), _) => diagnostic.help(format!("did you mean '{near}'?")),
         (None, _) => diagnostic.help(format!("it has: {}", names.join(", "))),
     }
 }

@@ -1,5 +1,7 @@
 //! One run's judging: refilled facts in, one judgement for each step out.
 
+mod shown;
+
 use super::compiled::{CompiledScript, Look};
 use super::evaluate::{Judgement, Present};
 use super::facts::{Facts, NO_ACTION, StageFacts};
@@ -7,7 +9,7 @@ use super::guards::{Guarding, Leave};
 use super::judged_world::JudgedWorld;
 use super::memory::Memory;
 use super::odometry::Odometry;
-use super::readings::{self, PartRead};
+use super::readings::PartRead;
 use super::uses;
 use crate::diagnostic::{Diagnostic, Result};
 use crate::geometry::Twist;
@@ -328,45 +330,6 @@ impl Judge {
             (judgement.then, judgement.to) = (own.then, own.to);
         }
         Ok(judgement)
-    }
-
-    /// What each rule added in the last step, in the order of the behaviour's rules.
-    #[must_use]
-    pub fn fired(&self) -> &[Option<f64>] {
-        &self.fired
-    }
-
-    /// The beam behind the last rule that fired in the last step, if it read the laser. Allocates nothing.
-    #[must_use]
-    pub(crate) fn fired_beam(&self) -> Option<usize> {
-        let last = self.fired.iter().rposition(Option::is_some)?;
-        readings::beam(self.present.parts(last), self.present.inputs())
-    }
-
-    /// What the condition of a rule reads in the present facts, part by part.
-    #[must_use]
-    pub fn evidence(&self, rule: usize) -> Vec<PartRead> {
-        self.present.parts(rule).iter().map(|part| part.evidence(self.present.inputs())).collect()
-    }
-
-    /// What the condition of a guard reads in the present facts, part by part.
-    #[must_use]
-    pub fn guard_evidence(&self, guard: usize) -> Vec<PartRead> {
-        let parts = self.present.compiled.guards.get(guard).map_or(&[][..], |guard| &guard.parts);
-        parts.iter().map(|part| part.evidence(self.present.inputs())).collect()
-    }
-
-    /// Whether a rule's condition holds in the present facts; false where it fails.
-    #[must_use]
-    pub fn holds(&self, rule: usize) -> bool {
-        let rule = self.present.compiled.rules.get(rule);
-        rule.is_some_and(|rule| self.present.condition(rule).unwrap_or(false))
-    }
-
-    /// For how many steps a rule's condition has held since it last fired, and how many it needs.
-    #[must_use]
-    pub fn held(&self, rule: usize) -> (u32, u32) {
-        (self.held.get(rule).copied().unwrap_or(0), self.needed.get(rule).copied().unwrap_or(1))
     }
 
     /// The robot has been brought back: every persistence starts again, and all that was remembered is forgotten.

@@ -44,6 +44,12 @@ impl CameraRays {
         Vector3::new(ahead * self.cos - down * self.sin, -right, -ahead * self.sin - down * self.cos)
     }
 
+    /// From the middle of the image so far, a ray of a pinhole leaves at 45 degrees; of a fisheye, at 1 radian.
+    #[must_use]
+    pub const fn focal_px(&self) -> f64 {
+        self.focal_px
+    }
+
     /// Bearing and elevation of a place in the image, degrees, positive to the left and above the horizon.
     #[must_use]
     pub fn bearing_deg(&self, x_px: f64, y_px: f64) -> (f64, f64) {

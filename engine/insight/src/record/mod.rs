@@ -2,10 +2,11 @@
 //!
 //! | topic | schema | what |
 //! |---|---|---|
-//! | `/tf` | foxglove.FrameTransform | the robot in the world |
+//! | `/tf` | foxglove.FrameTransform | the robot in the world, its laser and its camera on it |
 //! | `/world` | foxglove.SceneUpdate | walls and obstacles, once for each phase |
 //! | `/scan` | foxglove.LaserScan | ranges of all beams, metres, in the laser's own frame |
-//! | `/camera`, `/mask` | foxglove.CompressedImage | the camera's image and what the filters made of it, PNG |
+//! | `/camera`, `/mask` | foxglove.CompressedImage | the camera's image and what the filters made of it, PNG, in the camera's own frame |
+//! | `/calibration` | foxglove.CameraCalibration | the camera's lens, beside each image |
 //! | `/prey` | foxglove.PoseInFrame | the prey, where there is one |
 //! | `/step` | JSON | state, action, reward by rule, recovery |
 //!
@@ -16,6 +17,8 @@ use std::path::Path;
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Ledger, Phase, Plan};
 
+#[cfg(feature = "mcap")]
+mod camera;
 mod recording;
 #[cfg(feature = "mcap")]
 mod scene;

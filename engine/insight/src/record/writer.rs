@@ -4,13 +4,16 @@ use std::fs::File;
 use std::io::Cursor;
 use std::path::Path;
 
-use foxglove::messages::{CompressedImage, FrameTransform, LaserScan, PoseInFrame, SceneUpdate, Timestamp, Vector3};
+use foxglove::messages::{
+    CameraCalibration, CompressedImage, FrameTransform, LaserScan, PoseInFrame, SceneUpdate, Timestamp, Vector3,
+};
 use foxglove::{Channel, ChannelBuilder, Context, FoxgloveError, McapCompression, McapWriteOptions, PartialMetadata};
 use foxglove::{RawChannel, Schema};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 use serde_json::json;
 
+use super::camera::{CAMERA, calibration, drawn_camera, mount};
 use super::recording::Recording;
 use super::scene::{WORLD, pose, turned, update};
 use engine::diagnostic::{Diagnostic, Result};
@@ -69,6 +72,7 @@ struct Tape {
     world: Channel<SceneUpdate>,
     scan: Channel<LaserScan>,
     camera: Channel<CompressedImage>,
+    calibration: Channel<CameraCalibration>,
     mask: Channel<CompressedImage>,
     prey: Channel<PoseInFrame>,
     steps: std::sync::Arc<RawChannel>,
@@ -88,6 +92,7 @@ impl Tape {
             world: channel("/world").build(),
             scan: channel("/scan").build(),
             camera: channel("/camera").build(),
+            calibration: channel("/calibration").build(),
             mask: channel("/mask").build(),
             prey: channel("/prey").build(),
             steps,
@@ -124,7 +129,7 @@ impl Tape {
             self.scan(plan, &playback);
             self.judged(plan, phase, &playback, &step)?;
             if step.index % image_every == 0 {
-                self.images(&playback)?;
+                self.images(plan, &playback)?;
             }
         }
         Ok(())
@@ -195,13 +200,16 @@ impl Tape {
         Ok(())
     }
 
-    fn images(&mut self, playback: &Playback<'_>) -> Result<()> {
+    fn images(&mut self, plan: &Plan, playback: &Playback<'_>) -> Result<()> {
         let (at, timestamp) = self.now();
+        let camera = drawn_camera(plan, playback.cycle().robot().drawn());
+        self.transform.log_with_meta(&mount(&camera, ROBOT, timestamp), at);
+        self.calibration.log_with_meta(&calibration(&camera, timestamp), at);
         let seen = Snapshot::of(playback.cycle());
         let size = (seen.image.width_px as u32, seen.image.height_px as u32);
         let message = |data: Vec<u8>| CompressedImage {
             timestamp: Some(timestamp),
-            frame_id: ROBOT.to_owned(),
+            frame_id: CAMERA.to_owned(),
             data: data.into(),
             format: "png".to_owned(),
         };

@@ -11,6 +11,12 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          Write a path, https://host/file.pack or oci://host/name:version. Addresses need a program that was built with --features share.",
     ),
     (
+        "E-PACK-BYTES",
+        Kind::Trust,
+        "A registry gave other bytes than those whose digest it named: they were changed on the way or where they are kept.\n\
+         Nothing was installed. Do not use them; get the pack from its author, whose signature says what is in it.",
+    ),
+    (
         "E-PACK-CAPABILITY",
         Kind::Input,
         "A pack holds code that it does not ask for, asks for code that it does not hold, or asks for what this engine does not have.\n\
@@ -155,6 +161,12 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
         Kind::Limit,
         "A measurement was stopped before every seed was done.\n\
          Half of it proves nothing, so nothing was written. Start it again.",
+    ),
+    (
+        "E-PACK-VERSION",
+        Kind::Input,
+        "A registry has the pack that was asked for, but not this version of it.\n\
+         The help lists the versions that it has; write one of them behind the colon of the address.",
     ),
     (
         "E-PACK-WORLD",

@@ -6,6 +6,9 @@ pub(super) const COLD: f64 = 0.004;
 /// Visits of a state until it is coldest.
 pub(super) const COOLING_VISITS: u64 = 50;
 
+/// What rounding may leave of a variance, as a share of the mean square.
+pub(super) const ROUNDING: f64 = 1e-12;
+
 /// Weighted sums over all remembered returns.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct ReturnTotals {
@@ -28,8 +31,12 @@ impl ReturnScale {
     pub(super) fn update(&mut self, totals: &ReturnTotals) {
         if totals.weight > 0.0 {
             self.mean = totals.sum / totals.weight;
-            let variance = totals.squares / totals.weight - self.mean * self.mean;
-            self.unit = self.unit.max(variance.max(0.0).sqrt());
+            let square = totals.squares / totals.weight;
+            let variance = square - self.mean * self.mean;
+            // Of returns that are all alike, only what rounding left.
+            if variance > ROUNDING * square {
+                self.unit = self.unit.max(variance.sqrt());
+            }
         }
     }
 
@@ -60,6 +67,10 @@ mod tests {
         assert_eq!(scale.first_value(), -scale.unit);
         // All returns 1: the spread of before stays the unit, and what is usual is worth 1.
         scale.update(&ReturnTotals { weight: 2.0, sum: 2.0, squares: 2.0 });
+        let alike = ReturnTotals { weight: 0.3, sum: 0.3 * 0.1, squares: 0.3 * 0.1 * 0.1 };
+        let mut new = ReturnScale::default();
+        new.update(&alike);
+        assert_eq!(new.unit, 0.0);
         assert_eq!(scale.first_value(), 1.0 - 0.75_f64.sqrt());
         assert!((scale.temperature(COLD) - 0.003_464_101).abs() < 1e-8);
     }

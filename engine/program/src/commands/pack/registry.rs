@@ -13,6 +13,7 @@ use std::time::Duration;
 use docker_credential::DockerCredential;
 use engine::diagnostic::{Diagnostic, Result, printable};
 use oci_client::client::{Client, ClientConfig, ClientProtocol, Config, ImageLayer};
+use oci_client::errors::{OciDistributionError, OciErrorCode};
 use oci_client::manifest::{
     ImageIndexEntry, OCI_IMAGE_INDEX_MEDIA_TYPE, OCI_IMAGE_MEDIA_TYPE, OciDescriptor, OciImageIndex, OciImageManifest,
 };
@@ -67,7 +68,49 @@ fn block_on<T>(work: impl Future<Output = std::result::Result<T, Failure>>) -> s
     tokio::runtime::Builder::new_current_thread().enable_all().build()?.block_on(work)
 }
 
+/// What a registry answers that is more than a fault of the network.
+#[derive(Debug)]
+enum Refused {
+    /// It has the pack, but not this version; the versions that it has.
+    Version(Vec<String>),
+    /// The bytes are not those whose digest was asked for.
+    Bytes,
+}
+
+impl std::fmt::Display for Refused {
+    fn fmt(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Version(_) => to.write_str("there is no such version"),
+            Self::Bytes => to.write_str("the registry gave other bytes than it named"),
+        }
+    }
+}
+
+impl std::error::Error for Refused {}
+
+fn refused(address: &str, refused: &Refused) -> Box<Diagnostic> {
+    let address = printable(address);
+    Box::new(match refused {
+        Refused::Version(known) => {
+            let message = format!("there is no version '{address}'");
+            let help = match known.as_slice() {
+                [] => "the registry has no version of this pack".to_owned(),
+                known => format!("there are: {}", printable(&known.join(", "))),
+            };
+            Diagnostic::new("E-PACK-VERSION", message).help(help)
+        }
+        Refused::Bytes => {
+            let message = format!("the registry gave other bytes for '{address}' than it named");
+            let help = "do not use them: get the pack from its author, and tell whoever runs the registry";
+            Diagnostic::new("E-PACK-BYTES", message).help(help)
+        }
+    })
+}
+
 fn failed(address: &str, error: &Failure) -> Box<Diagnostic> {
+    if let Some(kind) = error.downcast_ref::<Refused>() {
+        return refused(address, kind);
+    }
     let mut reason = error.to_string();
     let mut cause = error.source();
     while let Some(inner) = cause {
@@ -127,7 +170,9 @@ async fn push_all(
         ("org.opencontainers.image.licenses".to_owned(), pack.manifest().license.clone()),
         ("org.opencontainers.image.description".to_owned(), format!("{name}: {}", pack.manifest().description)),
     ]);
-    let layers = [ImageLayer::new(pack.bytes().to_vec(), PACK_TYPE.to_owned(), None)];
+    // The title on the layer too: other clients name the file by it.
+    let title = BTreeMap::from([("org.opencontainers.image.title".to_owned(), pack.manifest().file_name())]);
+    let layers = [ImageLayer::new(pack.bytes().to_vec(), PACK_TYPE.to_owned(), Some(title))];
     let config = Config::new(manifest_text, MANIFEST_TYPE.to_owned(), None);
     let mut image = OciImageManifest::build(&layers, &config, Some(annotations));
     image.media_type = Some(OCI_IMAGE_MEDIA_TYPE.to_owned());
@@ -196,7 +241,11 @@ fn descriptor(media_type: &str, digest: &str, size: usize) -> OciDescriptor {
 
 async fn pull(reference: &Reference) -> std::result::Result<(Vec<u8>, Option<String>), Failure> {
     let (client, auth) = (client(reference), credentials(reference));
-    let (image, digest) = client.pull_image_manifest(reference, &auth).await?;
+    let (image, digest) = match client.pull_image_manifest(reference, &auth).await {
+        Ok(found) => found,
+        Err(error) if is_missing(&error) => return Err(no_version(&client, &auth, reference, error).await),
+        Err(error) => return Err(error.into()),
+    };
     let bytes = only_layer(&client, reference, &image, PACK_TYPE, MAX_PACK_BYTES).await?;
     let by_digest = reference.clone_with_digest(digest);
     let referrers = client.pull_referrers(&by_digest, Some(SIGNATURE_TYPE)).await?;
@@ -205,6 +254,33 @@ async fn pull(reference: &Reference) -> std::result::Result<(Vec<u8>, Option<Str
     let (image, _) = client.pull_image_manifest(&own, &auth).await?;
     let text = only_layer(&client, &own, &image, SIGNATURE_TYPE, MAX_SIGNATURE_BYTES).await?;
     Ok((bytes, Some(String::from_utf8(text)?)))
+}
+
+fn is_missing(error: &OciDistributionError) -> bool {
+    match error {
+        OciDistributionError::ImageManifestNotFoundError(_) => true,
+        OciDistributionError::RegistryError { envelope, .. } => {
+            envelope.errors.iter().any(|error| error.code == OciErrorCode::ManifestUnknown)
+        }
+        OciDistributionError::ServerError { code, .. } => *code == 404,
+        _ => false,
+    }
+}
+
+/// The versions that a registry has of a pack of which one is missing; the first error if it does not tell them.
+async fn no_version(
+    client: &Client,
+    auth: &RegistryAuth,
+    reference: &Reference,
+    error: OciDistributionError,
+) -> Failure {
+    match client.list_tags(reference, auth, None, None).await {
+        // A signature without a list of referrers is kept as a tag.
+        Ok(found) => {
+            Refused::Version(found.tags.into_iter().filter(|tag| !tag.starts_with("sha256-")).collect()).into()
+        }
+        Err(_) => error.into(),
+    }
 }
 
 /// The one layer of an artifact. Its digest is checked by the client, its size on the bytes that really come.
@@ -222,8 +298,11 @@ async fn only_layer(
         return Err(format!("it is of the type {}, not {media_type}: no behaviour pack", layer.media_type).into());
     }
     let mut out = Limited { bytes: Vec::new(), limit };
-    client.pull_blob(reference, layer, &mut out).await?;
-    Ok(out.bytes)
+    match client.pull_blob(reference, layer, &mut out).await {
+        Ok(()) => Ok(out.bytes),
+        Err(OciDistributionError::DigestError(_)) => Err(Refused::Bytes.into()),
+        Err(error) => Err(error.into()),
+    }
 }
 
 async fn download(address: &str) -> std::result::Result<(Vec<u8>, Option<String>), Failure> {

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::super::scale::ROUNDING;
 use crate::allowed::Allowed;
 use crate::geometry::Twist;
 use crate::learner::Transition;
@@ -127,7 +128,11 @@ impl Plain {
         }
         self.fits += 1;
         self.mean = totals[1] / totals[0];
-        self.unit = self.unit.max((totals[2] / totals[0] - self.mean * self.mean).max(0.0).sqrt());
+        let square = totals[2] / totals[0];
+        let variance = square - self.mean * self.mean;
+        if variance > ROUNDING * square {
+            self.unit = self.unit.max(variance.sqrt());
+        }
     }
 
     fn kernel(&self, one: usize, other: usize) -> f64 {

@@ -1,0 +1,74 @@
+//! What the present step shows to whoever looks on.
+
+use super::Cycle;
+use crate::experiment::{SeenView, ViewStage};
+use crate::judge::{Facts, Judge};
+use crate::robot::Robot;
+use crate::sensors::observation::Observation;
+use crate::state::{Grid, StateMap};
+
+impl<R: Robot> Cycle<R> {
+    /// By rule: what each added in the last step, if it fired.
+    #[must_use]
+    pub fn fired(&self) -> &[Option<f64>] {
+        self.judge.fired()
+    }
+
+    /// The beam behind the last rule that fired in the last step, if it read the laser.
+    #[must_use]
+    pub(crate) fn fired_beam(&self) -> Option<usize> {
+        self.judge.fired_beam()
+    }
+
+    /// What judged the last step.
+    #[must_use]
+    pub fn judge(&self) -> &Judge {
+        &self.judge
+    }
+
+    /// What the script was told in the last step.
+    #[must_use]
+    pub fn facts(&self) -> &Facts {
+        self.judge.facts()
+    }
+
+    /// The robot behind the door.
+    #[must_use]
+    pub fn robot(&self) -> &R {
+        &self.robot
+    }
+
+    /// The last observation.
+    #[must_use]
+    pub fn observation(&self) -> &Observation {
+        &self.observation
+    }
+
+    /// What each of the script's own views made of the last image.
+    pub fn views(&self) -> impl Iterator<Item = SeenView> {
+        self.eyes[0].views()
+    }
+
+    /// The last mask of the script's own filters.
+    #[must_use]
+    pub fn mask(&self) -> &[u8] {
+        self.eyes[0].chain().mask()
+    }
+
+    /// What each of the script's own filters made of the last image, view by view, in order.
+    pub fn stages(&self) -> impl Iterator<Item = ViewStage<'_>> {
+        self.eyes[0].stages()
+    }
+
+    /// The map that makes the script's own states.
+    #[must_use]
+    pub fn state_map(&self) -> &dyn StateMap {
+        &*self.eyes[0].map
+    }
+
+    /// The script's own grid, with its last counts.
+    #[must_use]
+    pub fn grid(&self) -> &Grid {
+        self.eyes[0].grid()
+    }
+}
