@@ -55,6 +55,27 @@ fn the_page_of_a_run_holds_what_the_run_recorded() {
 }
 
 #[test]
+fn measures_and_stages_of_every_step_stand_on_the_page() {
+    let bench = Bench::new();
+    let script = SCRIPT.to_owned()
+        + "stages([\"near\", \"far\"]);\nmeasure turn = action.angular;\n\
+           rule \"away\" in \"near\" when laser.front > 2.0 => 0 then stage \"far\";\n";
+    bench.write("staged.rhai", script);
+    bench.engine(&["run", "staged.rhai"]);
+    let page = document(&bench.read("runs/staged/1/report.html"));
+    assert_eq!(page["measures"], serde_json::json!(["turn"]));
+    assert_eq!(page["stages"], serde_json::json!({ "names": ["near", "far"], "states": 64 }));
+    let track = &page["seeds"][0]["learning"];
+    let turns = bytes(&track["measures"][0]);
+    let turns: Vec<f32> = turns.chunks_exact(4).map(|four| f32::from_le_bytes(four.try_into().unwrap())).collect();
+    let actions = bytes(&track["action"]);
+    assert_eq!((turns.len(), actions.len()), (800, 800));
+    for (turn, action) in turns.iter().zip(actions) {
+        assert_eq!(f64::from(*turn), f64::from(page["actions"][usize::from(action)][1].as_f64().unwrap() as f32));
+    }
+}
+
+#[test]
 fn the_pictures_of_a_moment_come_with_its_reasons() {
     let bench = Bench::new();
     bench.engine(&["run", "short.rhai"]);

@@ -46,13 +46,6 @@ pub struct Cycle<R> {
     stay_steps: u64,
 }
 
-impl<R> Cycle<R> {
-    /// What the script's measures came to in the last step, in their order.
-    pub(super) fn judged_measures(&self) -> impl Iterator<Item = f64> {
-        self.judge.measures()
-    }
-}
-
 impl<R: Robot> Cycle<R> {
     /// Takes the first observation and runs the script's calibration on it.
     ///

@@ -58,7 +58,7 @@ impl<R> Observer<R> for Staged {
         if let Some(stage) = step.entered {
             self.entered |= 1 << stage;
         }
-        for (measure, value) in self.measures.iter_mut().zip(cycle.judged_measures()) {
+        for (measure, value) in self.measures.iter_mut().zip(cycle.measures()) {
             measure.mean += value;
             measure.least = measure.least.min(value);
             measure.greatest = measure.greatest.max(value);

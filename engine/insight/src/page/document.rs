@@ -68,6 +68,12 @@ pub struct Document {
     /// The script's uses of learned policies, in their order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub uses: Vec<UseView>,
+    /// The names of the script's measures, in their order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub measures: Vec<String>,
+    /// The script's stages.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stages: Option<StagesView>,
     /// The settings that differ from their defaults first, then the others.
     pub settings: Vec<SettingView>,
     /// The script's parameters.
@@ -103,6 +109,25 @@ pub struct RuleView {
     pub lines: usize,
     /// What it adds whenever it fires; null if that depends on the step.
     pub value: Option<f64>,
+}
+
+/// The stages of a script, the highest digit of its states.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct StagesView {
+    /// Their names.
+    pub names: Vec<String>,
+    /// How many states there are within one stage.
+    pub states: usize,
+}
+
+impl StagesView {
+    fn of(plan: &Plan) -> Result<Option<Self>> {
+        let names = plan.settings.stages.clone();
+        if names.is_empty() {
+            return Ok(None);
+        }
+        Ok(Some(Self { states: plan.state_map()?.states() / names.len(), names }))
+    }
 }
 
 /// One use of a learned policy.
@@ -218,6 +243,8 @@ impl Document {
             actions: plan.motions().iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
             grid: [rows, columns],
             uses: plan.behaviour.uses().map(|(text, _)| UseView { name: text.name.clone(), line: text.line }).collect(),
+            measures: plan.behaviour.measures().map(str::to_owned).collect(),
+            stages: StagesView::of(plan)?,
             scan: ScanShape {
                 beams: fan.beams,
                 first_rad: fan.bearing_rad(0),

@@ -16,6 +16,7 @@
 //! | `fired` | bits | rule `r` is bit `r % 8` of byte `r / 8`; `ceil(rules / 8)` bytes a step |
 //! | `beam`, `nearest_beam` | u16 | beam behind the last rule that fired (65535 none); beam with the least range |
 //! | `nearest` | u16 | millimetres |
+//! | `measures[]` | f32 | the script's measures, in the order of `measures`; may end before the steps do |
 //! | `scan` | u8 | every [`ScanShape::every`]th beam, 255 the laser's longest range; may end before the steps do |
 //!
 //! A track of more than [`MOST_TRACK_STEPS`] steps holds the first and the last half of as many: `spans` says which.

@@ -70,6 +70,8 @@ pub struct Track {
     pub nearest_beam: String,
     pub nearest: String,
     pub movers: Vec<MoverTrack>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub measures: Vec<String>,
     pub scan: String,
 }
 
@@ -100,6 +102,7 @@ struct Columns {
     nearest_beam: Vec<u8>,
     nearest: Vec<u8>,
     movers: Vec<[Vec<u8>; 3]>,
+    measures: Vec<Vec<u8>>,
     scan: Vec<u8>,
 }
 
@@ -162,6 +165,7 @@ impl TrackSource<'_> {
                 let kept = ranges_m.iter().step_by(self.scan.every).take(self.scan.kept);
                 let most_m = self.scan.max_range_m as f32;
                 columns.scan.extend(kept.map(|range_m| (range_m / most_m * 255.0).round().clamp(0.0, 255.0) as u8));
+                columns.add_measures(playback.cycle().measures());
             }
         }
         Ok(shots)
@@ -211,6 +215,15 @@ impl Columns {
         }
     }
 
+    fn add_measures(&mut self, values: impl Iterator<Item = f64>) {
+        for (number, value) in values.enumerate() {
+            if self.measures.len() == number {
+                self.measures.push(Vec::new());
+            }
+            self.measures[number].extend((value as f32).to_le_bytes());
+        }
+    }
+
     fn finish(self, steps: u64, spans: Vec<[usize; 2]>) -> Track {
         Track {
             steps,
@@ -234,6 +247,7 @@ impl Columns {
                 .iter()
                 .map(|[x, y, yaw]| MoverTrack { x: base64(x), y: base64(y), yaw: base64(yaw) })
                 .collect(),
+            measures: self.measures.iter().map(|measure| base64(measure)).collect(),
             scan: base64(&self.scan),
         }
     }
@@ -248,7 +262,7 @@ impl Track {
         let others =
             [&self.world, &self.reward, &self.fired, &self.beam, &self.nearest_beam, &self.nearest, &self.scan];
         let movers = self.movers.iter().flat_map(|mover| [&mover.x, &mover.y, &mover.yaw]);
-        columns.into_iter().chain(others).chain(movers).map(String::len).sum()
+        columns.into_iter().chain(others).chain(movers).chain(&self.measures).map(String::len).sum()
     }
 }
 

@@ -7,6 +7,13 @@ use crate::robot::Robot;
 use crate::sensors::observation::Observation;
 use crate::state::{Grid, StateMap};
 
+impl<R> Cycle<R> {
+    /// What the script's measures came to in the last step, in their order; true is 1, false 0.
+    pub fn measures(&self) -> impl Iterator<Item = f64> {
+        self.judge.measures()
+    }
+}
+
 impl<R: Robot> Cycle<R> {
     /// By rule: what each added in the last step, if it fired.
     #[must_use]

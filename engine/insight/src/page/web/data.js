@@ -56,6 +56,7 @@ class Track {
     this.movers = raw.movers.map((mover) => ({
       x: new Int16Array(bytes(mover.x)), y: new Int16Array(bytes(mover.y)), yaw: new Int16Array(bytes(mover.yaw)),
     }));
+    this.measures = (raw.measures ?? []).map((measure) => new Float32Array(bytes(measure)));
     this.scan = new Uint8Array(bytes(raw.scan));
     this.count = this.x.length;
     const last = this.spans[this.spans.length - 1];

@@ -1,10 +1,12 @@
-// All steps of a phase in one line: a row of marks for each rule, and the reward of each step where it is more than marks.
+// All steps of a phase in one line: a row of marks for each rule, a band for the stages and for who drives, a trace for the reward,
+// where it is more than marks, and for each measure.
 
 const ROW = 13;
 const TRACE = 40;
 const FOOT = 30;
 const TOTAL = 'reward of a step';
 const DRIVES = 'who drives';
+const STAGE = 'stage';
 /** A reward that is not 0 in a greater share of the steps is no rare punishment. */
 const RARE = 0.1;
 
@@ -12,6 +14,26 @@ const RARE = 0.1;
 function speaks(doc, track) {
   const often = track.reward.reduce((count, reward) => count + (reward !== 0), 0) > RARE * track.count;
   return often || doc.rules.some((rule, at) => rule.value === null && track.firings(at) > 0);
+}
+
+/** Who drives, and what the robot is about. */
+function bands(doc, track) {
+  const found = [];
+  if (doc.uses) {
+    const of = (index) => (track.driver[index] ? track.driver[index] - 1 : null);
+    found.push({ title: DRIVES, height: ROW, of, name: (use) => doc.uses[use].name });
+  }
+  if (doc.stages) {
+    const of = (index) => Math.floor(track.state[index] / doc.stages.states);
+    found.push({ title: STAGE, height: ROW, of, name: (stage) => doc.stages.names[stage] });
+  }
+  return found;
+}
+
+/** The reward, where the rules do not say it already, and each measure. */
+function traces(doc, track) {
+  const measures = track.measures.map((values, at) => ({ title: doc.measures[at], height: TRACE, values, zero: false }));
+  return [...(speaks(doc, track) ? [{ title: TOTAL, height: TRACE, values: track.reward, zero: true }] : []), ...measures];
 }
 
 class Timeline {
@@ -35,22 +57,24 @@ class Timeline {
   }
 
   drawBase(doc, track, litRule, swaps) {
-    const traced = Boolean(track?.count) && speaks(doc, track);
-    const band = doc.uses ? ROW : 0;
-    const foot = doc.rules.length * ROW + band + (traced ? TRACE : 0) + 1;
+    const below = track?.count ? [...bands(doc, track), ...traces(doc, track)] : [];
+    const foot = doc.rules.length * ROW + below.reduce((sum, one) => sum + one.height, 0) + 1;
     this.box.style.height = `${foot + FOOT}px`;
     const sheet = fit(this.base);
     this.frame = null;
     if (!sheet || !track || !track.count) return;
     const { pen, width } = sheet;
-    const names = [...doc.rules.map((rule) => rule.name), ...(band ? [DRIVES] : []), ...(traced ? [TOTAL] : [])];
+    const names = [...doc.rules.map((rule) => rule.name), ...below.map((one) => one.title)];
     const left = Math.min(width * 0.3, Math.max(60, ...names.map((name) => pen.measureText(name).width + 24)));
     const wide = width - left - 8;
     const steps = Math.max(track.end, 2);
     this.frame = { left, wide, steps, foot, x: (step) => left + (step / (steps - 1)) * wide };
     doc.rules.forEach((rule, at) => this.row(pen, track, rule, at, litRule));
-    if (band) this.drivers(pen, doc, track, doc.rules.length * ROW + 1);
-    if (traced) this.trace(pen, track, doc.rules.length * ROW + band + 1);
+    let top = doc.rules.length * ROW + 1;
+    for (const one of below) {
+      one.values ? this.trace(pen, track, top, one) : this.band(pen, track, top, one);
+      top += one.height;
+    }
     this.axis(pen, track, swaps);
   }
 
@@ -80,46 +104,54 @@ class Timeline {
     pen.globalAlpha = 1;
   }
 
-  /** Who drives: a bar over the steps of each use, under its policy's name where there is room. */
-  drivers(pen, doc, track, top) {
+  /** A bar over the steps of each spell, under its name where there is room. */
+  band(pen, track, top, { title, of, name }) {
     const { left, wide, x } = this.frame;
     pen.fillStyle = ink.soft;
     pen.fillRect(left, top, wide, ROW - 3);
-    label(pen, DRIVES, 14, top + 5.5, 'left', 'middle', ink.text);
+    this.title(pen, title, top + 5.5);
     for (let from = 0, to = 0; from < track.count; from = to) {
-      const driver = track.driver[from];
-      while (to < track.count && track.driver[to] === driver && track.step(to) - track.step(from) === to - from) to += 1;
-      if (driver === 0) continue;
+      const what = of(from);
+      while (to < track.count && of(to) === what && track.step(to) - track.step(from) === to - from) to += 1;
+      if (what === null) continue;
       const [start, broad] = [x(track.step(from)), Math.max(x(track.step(to - 1)) - x(track.step(from)), 1)];
-      pen.globalAlpha = 0.35 + 0.4 * ((driver - 1) % 2);
+      pen.globalAlpha = 0.25 + 0.2 * (what % 3);
       pen.fillStyle = ink.accent;
       pen.fillRect(start, top, broad, ROW - 3);
       pen.globalAlpha = 1;
-      const { name } = doc.uses[driver - 1];
-      if (pen.measureText(name).width + 6 < broad) label(pen, name, start + 3, top + 5.5, 'left', 'middle', ink.text);
+      if (pen.measureText(name(what)).width + 6 < broad) label(pen, name(what), start + 3, top + 5.5, 'left', 'middle', ink.text);
     }
   }
 
-  /** The reward of each step: in each column of pixels from the least to the greatest, and through their means. */
-  trace(pen, track, top) {
+  title(pen, text, y) {
+    pen.save();
+    pen.beginPath();
+    pen.rect(0, y - 7, this.frame.left - 8, 14);
+    pen.clip();
+    label(pen, text, 14, y, 'left', 'middle', ink.text);
+    pen.restore();
+  }
+
+  /** A number of each step: in each column of pixels from the least to the greatest, and through their means. */
+  trace(pen, track, top, { title, values, zero }) {
     const { left, wide, x } = this.frame;
-    let [low, high] = [0, 0];
-    for (const reward of track.reward) { low = Math.min(low, reward); high = Math.max(high, reward); }
-    if (high === low) high = 1;
-    const y = (reward) => top + 4 + ((high - reward) / (high - low)) * (TRACE - 10);
+    let [low, high] = zero ? [0, 0] : [Infinity, -Infinity];
+    for (const value of values) { low = Math.min(low, value); high = Math.max(high, value); }
+    if (high === low) high = low + 1;
+    const y = (value) => top + 4 + ((high - value) / (high - low)) * (TRACE - 10);
     pen.fillStyle = ink.soft;
     pen.fillRect(left, top, wide, TRACE - 3);
-    label(pen, TOTAL, 14, top + 12, 'left', 'middle', ink.text);
-    label(pen, `${short(low)} to ${short(high)}`, 14, top + 26, 'left', 'middle');
-    line(pen, [[left, y(0)], [left + wide, y(0)]], ink.line, 1);
+    this.title(pen, title, top + 12);
+    this.title(pen, `${short(low)} to ${short(high)}`, top + 26);
+    if (low <= 0 && high >= 0) line(pen, [[left, y(0)], [left + wide, y(0)]], ink.line, 1);
     const columns = new Map();
-    for (let index = 0; index < track.count; index += 1) {
+    for (let index = 0; index < Math.min(track.count, values.length); index += 1) {
       const at = Math.round(x(track.step(index)));
-      const reward = track.reward[index];
-      const column = columns.get(at) ?? { least: reward, most: reward, sum: 0, count: 0 };
-      column.least = Math.min(column.least, reward);
-      column.most = Math.max(column.most, reward);
-      column.sum += reward;
+      const value = values[index];
+      const column = columns.get(at) ?? { least: value, most: value, sum: 0, count: 0 };
+      column.least = Math.min(column.least, value);
+      column.most = Math.max(column.most, value);
+      column.sum += value;
       column.count += 1;
       columns.set(at, column);
     }
