@@ -169,10 +169,27 @@ fn next(_: &[ImmutableString], ahead: &str, state: &mut Dynamic) -> Next {
     Ok(Some(symbol.into()))
 }
 
+/// What is wrong with a word of a rule that stands where another one should.
+fn out_of_order(read: Read, ahead: &str) -> Option<&'static str> {
+    const ORDER: &str = "the order of a rule is: in, when, for, once, =>, per second, then";
+    Some(match (read, ahead) {
+        (Read::Name | Read::Stage, "for" | "once" | "per" | "then" | "=>") => ORDER,
+        (Read::Condition, "in" | "per" | "then") => ORDER,
+        (Read::Value, "once" | "for" | "in" | "when") => ORDER,
+        (Read::Condition, ",") => "conditions are joined with '&&' (and) or '||' (or)",
+        (Read::Value | Read::Second, "to") => "'to' stands behind what ends the attempt: then fail to \"nearest\"",
+        (Read::Outcome | Read::End, "then") => "a rule has one 'then': write a second rule",
+        _ => return None,
+    })
+}
+
 /// The next symbol of a rule and what has been read with it; nothing at its end.
 fn step(read: Read, ahead: &str) -> Result<Option<(&str, Read)>, &'static str> {
     const EXPRESSION: &str = "$expr$";
     const TEXT: &str = "$string$";
+    if let Some(message) = out_of_order(read, ahead) {
+        return Err(message);
+    }
     let text = ahead.starts_with('"');
     Ok(Some(match read {
         Read::Rule if text => (TEXT, Read::Name),
@@ -184,9 +201,6 @@ fn step(read: Read, ahead: &str) -> Result<Option<(&str, Read)>, &'static str> {
         }
         Read::Stage if ahead == "," => (ahead, Read::In),
         Read::Name | Read::Stage if ahead == "when" => (ahead, Read::When),
-        Read::Name | Read::Stage if matches!(ahead, "for" | "once" | "per" | "then" | "=>") => {
-            return Err("the order of a rule is: in, when, for, once, =>, per second, then");
-        }
         Read::Name => return Err("after the rule's name comes 'when' and a condition"),
         Read::Stage => return Err("after the stages comes 'when' and a condition"),
         Read::When if matches!(ahead, "for" | "=>" | ";") => return Err("after 'when' comes a condition"),
@@ -197,10 +211,6 @@ fn step(read: Read, ahead: &str) -> Result<Option<(&str, Read)>, &'static str> {
         Read::Time => return Err("a time needs its unit: 'for 10 steps' or 'for 5 seconds'"),
         Read::Condition | Read::Unit if ahead == "once" => (ahead, Read::Once),
         Read::Condition | Read::Unit | Read::Once if ahead == "=>" => (ahead, Read::Arrow),
-        Read::Condition if matches!(ahead, "in" | "per" | "then") => {
-            return Err("the order of a rule is: in, when, for, once, =>, per second, then");
-        }
-        Read::Condition if ahead == "," => return Err("conditions are joined with '&&' (and) or '||' (or)"),
         Read::Condition => {
             return Err("after the condition comes 'for N steps', 'for N seconds', 'once', or '=>' and a value");
         }
@@ -211,9 +221,6 @@ fn step(read: Read, ahead: &str) -> Result<Option<(&str, Read)>, &'static str> {
         }
         Read::Arrow => (EXPRESSION, Read::Value),
         Read::Value if ahead == "per" => (ahead, Read::Per),
-        Read::Value if matches!(ahead, "once" | "for" | "in" | "when") => {
-            return Err("the order of a rule is: in, when, for, once, =>, per second, then");
-        }
         Read::Per if ahead == "second" => (ahead, Read::Second),
         Read::Per => return Err("a value is for one step, or 'per second'"),
         Read::Value | Read::Second if ahead == "then" => (ahead, Read::Then),
@@ -229,10 +236,6 @@ fn step(read: Read, ahead: &str) -> Result<Option<(&str, Read)>, &'static str> {
         Read::Then => return Err("after 'then' comes recover, fail, goal, restart, or stage \"name\""),
         Read::ThenStage if text => (TEXT, Read::End),
         Read::ThenStage => return Err("after 'then stage' comes the name of a stage in quotes"),
-        Read::Value | Read::Second if ahead == "to" => {
-            return Err("'to' stands behind what ends the attempt: then fail to \"nearest\"");
-        }
-        Read::Outcome | Read::End if ahead == "then" => return Err("a rule has one 'then': write a second rule"),
         Read::Value | Read::Second | Read::Outcome | Read::End => return Ok(None),
     }))
 }

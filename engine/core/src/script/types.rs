@@ -120,7 +120,7 @@ impl TypeChecker<'_> {
         let access = Access::of(operand)?;
         let by_argument = self.facts.contains(&access.root);
         let (group, links) = if by_argument { access.group_of_facts()? } else { access.group()? };
-        let own = access.is_local && !by_argument || self.code.defines(group) && !by_argument;
+        let own = !by_argument && (access.is_local || self.code.defines(group));
         let known = self.code.views.group_of(group).filter(|_| links.is_empty() && !own)?;
         if fact_of(known, links).is_some() {
             return None;

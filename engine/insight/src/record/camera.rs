@@ -77,7 +77,7 @@ mod tests {
 
     #[test]
     fn the_camera_looks_ahead_and_down_by_its_tilt() {
-        let (sin, cos) = 0.7_f64.sin_cos();
+        let (sin, cos) = libm::sincos(0.7);
         let by = looking_down(0.7);
         let cases = [
             // Ahead of the lens lies ahead of the robot and down.

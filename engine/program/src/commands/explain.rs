@@ -172,21 +172,27 @@ fn print(console: &mut Console, plan: &Plan, report: &StepReport) -> std::result
     }
     let after = after(reasons);
     console.line(&format!("reward:    {}{after}", short(reasons.reward)))?;
-    for rule in reasons.rules.iter().filter(|rule| rule.added.is_some()) {
+    print_rules(console, plan, &reasons.rules)?;
+    if let Some(value) = &report.value {
+        value_chain(console, value)?;
+    }
+    console.line(&format!("\npictures:  {}\n           {}", report.pictures[0], report.pictures[1]))
+}
+
+/// What each rule said: those that fired, then the others.
+fn print_rules(console: &mut Console, plan: &Plan, rules: &[RuleReasons]) -> std::result::Result<(), ConsoleError> {
+    for rule in rules.iter().filter(|rule| rule.added.is_some()) {
         console.line("")?;
         console.line(&fired(plan, rule))?;
     }
-    let silent: Vec<&RuleReasons> = reasons.rules.iter().filter(|rule| rule.added.is_none()).collect();
+    let silent: Vec<&RuleReasons> = rules.iter().filter(|rule| rule.added.is_none()).collect();
     if !silent.is_empty() {
         console.line("\nwhat did not fire:")?;
     }
     for rule in silent {
         console.line(&format!("  \"{}\" (line {}): {}", printable(&rule.name), rule.line, silence(rule)))?;
     }
-    if let Some(value) = &report.value {
-        value_chain(console, value)?;
-    }
-    console.line(&format!("\npictures:  {}\n           {}", report.pictures[0], report.pictures[1]))
+    Ok(())
 }
 
 /// Which learned policy chose the action, and why it did.
