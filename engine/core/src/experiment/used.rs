@@ -55,15 +55,18 @@ impl UsedPolicy {
             let (there, here) = ((row.get)(other), (row.get)(own));
             (format!("{name} {there}, this script has {here}"), format!("{group}(#{{ {key}: {there} }})"))
         });
-        let (differ, write): (Vec<String>, Vec<String>) = differing.unzip();
-        if !differ.is_empty() {
-            let help = format!("write {}; or learn it again with this robot", write.join("; "));
-            return Err([format!("was learned with {}", differ.join("; ")), help]);
-        }
+        let (mut differ, mut write): (Vec<String>, Vec<String>) = differing.unzip();
         if self.every(own.run.period_s).is_none() {
             let (there, here) = (other.run.period_s, own.run.period_s);
-            let why = format!("was learned with a step of {there} s, which is no whole number of steps of {here} s");
-            return Err([why, format!("write run(#{{ period_s: {there} }})")]);
+            differ.push(format!("a step of {there} s, which is no whole number of this script's steps of {here} s"));
+            write.push(format!("run(#{{ period_s: {there} }})"));
+        }
+        if !differ.is_empty() {
+            let help = format!(
+                "write {}; or learn it again as this robot, with --set camera.tilt_deg=..., run.period_s=... and so on",
+                write.join("; ")
+            );
+            return Err([format!("was learned with {}", differ.join("; ")), help]);
         }
         Ok(())
     }

@@ -57,6 +57,9 @@ pub(crate) fn unknown_name_at(source: &SourceText, at: usize, name: &str, own_na
     let truth = matches!(name, "True" | "False" | "TRUE" | "FALSE").then(|| name.to_lowercase());
     match truth.or(near) {
         Some(near) => diagnostic.help(format!("did you mean '{near}'?")),
+        // `red.seen`: what is read of it is a fact.
+        None if source.text[at..].strip_prefix(name).is_some_and(|rest| rest.starts_with('.')) => diagnostic
+            .help(format!("a view of this name is made by view(\"{0}\", filter(\"colour\"));", printable(name))),
         None => diagnostic.help(format!("define it first: let {} = ...;", printable(name))),
     }
 }

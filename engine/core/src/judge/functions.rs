@@ -115,6 +115,11 @@ fn larger(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }
 
+/// -1, 0 or 1; 0 of what is no number.
+pub(crate) fn sign(x: f64) -> f64 {
+    f64::from(i8::from(x > 0.0) - i8::from(x < 0.0))
+}
+
 /// Makes the functions known to an engine, over those of Rhai's packages.
 pub(crate) fn register(engine: &mut Engine) {
     for &(name, function) in OF_ONE {
@@ -138,6 +143,7 @@ pub(crate) fn register(engine: &mut Engine) {
     engine.register_fn("min", |a: i64, b: i64| a.min(b));
     engine.register_fn("max", |a: i64, b: i64| a.max(b));
     register_clamp(engine);
+    engine.register_fn("sign", |x: f64| sign(x) as i64);
     engine.register_fn("to_int", |x: i64| x);
     // A conversion in Rust stops at the greatest whole number, so that no value is an error here.
     engine.register_fn("to_int", |x: f64| x as i64);

@@ -144,7 +144,7 @@ impl Behaviour {
 
     /// Whether an attempt may end in a goal.
     #[must_use]
-    pub(crate) fn has_goals(&self) -> bool {
+    pub fn has_goals(&self) -> bool {
         self.endable.goal
     }
 

@@ -2,7 +2,9 @@
 
 use super::access::{Access, Link};
 use crate::judge::expression::{Arithmetic, Comparison, Flag, Number, Typed};
-use crate::judge::functions::{OF_ONE, OF_ONE_FRACTION, OF_TWO, OF_TWO_FRACTION, OneArgument, TwoArguments, WINDOWS};
+use crate::judge::functions::{
+    OF_ONE, OF_ONE_FRACTION, OF_TWO, OF_TWO_FRACTION, OneArgument, TwoArguments, WINDOWS, sign,
+};
 use crate::judge::memory::Remembered;
 use crate::judge::needs::{Needs, SlotUse};
 use crate::judge::rule::Persistence;
@@ -174,6 +176,7 @@ impl Compiler<'_> {
                 }
                 _ => self.call_of_two(name, a, b),
             },
+            [of, low, high] if name == "clamp" => self.clamp(of, low, high),
             _ => None,
         }
     }
@@ -221,6 +224,7 @@ impl Compiler<'_> {
             ("!", Typed::Flag(flag)) => Some(Typed::Flag(Flag::Not(Box::new(flag)))),
             ("-", Typed::Number(number)) => Some(Typed::Number(Number::Negate(Box::new(number)))),
             ("-", Typed::Whole(Number::Constant(value))) => Some(Typed::Whole(Number::Constant(0.0 - value))),
+            ("sign", Typed::Number(of) | Typed::Whole(of)) => Some(Typed::Whole(Number::OfOne(sign, Box::new(of)))),
             (_, Typed::Number(number)) => {
                 let function = find(OF_ONE).or_else(|| find(OF_ONE_FRACTION))?;
                 Some(Typed::Number(Number::OfOne(function, Box::new(number))))
@@ -238,6 +242,23 @@ impl Compiler<'_> {
         }
         let function = find(OF_TWO_FRACTION)?;
         Some(Typed::Number(Number::OfTwo(function, self.pair(a, b)?)))
+    }
+
+    /// A number with a fraction between any two, or a whole one between whole ones.
+    fn clamp(&mut self, of: &Expr, low: &Expr, high: &Expr) -> Option<Typed> {
+        let find = |name: &str| OF_TWO_FRACTION.iter().find(|row| row.0 == name).map(|row| row.1);
+        let (larger, smaller) = (find("max")?, find("min")?);
+        let within = |of: Number, low: Number, high: Number| {
+            let least = Number::OfTwo(larger, Box::new([of, low]));
+            Number::OfTwo(smaller, Box::new([least, high]))
+        };
+        match (self.expression(of)?, self.expression(low)?, self.expression(high)?) {
+            (Typed::Whole(of), Typed::Whole(low), Typed::Whole(high)) => Some(Typed::Whole(within(of, low, high))),
+            (Typed::Number(of), Typed::Number(low) | Typed::Whole(low), Typed::Number(high) | Typed::Whole(high)) => {
+                Some(Typed::Number(within(of, low, high)))
+            }
+            _ => None,
+        }
     }
 
     /// Two numbers of which at least one has a fraction.

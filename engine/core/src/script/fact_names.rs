@@ -72,7 +72,13 @@ impl Names<'_> {
             && from >= to
         {
             let message = format!("no beam lies between {from}° and {to}°: the lesser bearing comes first");
-            self.mistake("E-SCRIPT-FACT", position, message, "empty", format!("write between({to}, {from})"));
+            // From the left over the back to the right.
+            let help = if from > to && from.abs() > 90.0 && to.abs() > 90.0 {
+                format!("write min(laser.between({from}, 180).nearest, laser.between(-180, {to}).nearest)")
+            } else {
+                format!("write between({to}, {from})")
+            };
+            self.mistake("E-SCRIPT-FACT", position, message, "empty", help);
         }
     }
 

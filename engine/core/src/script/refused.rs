@@ -114,6 +114,10 @@ pub(super) fn unknown_function_at(source: &SourceText, at: usize, name: &str, ow
     let near = nearest_name(name, known.chain(own.iter().map(String::as_str)));
     let message = format!("there is no function '{}' in a script", printable(name));
     let diagnostic = mistake_at(source, "E-SCRIPT-NAME", at, message, "not known");
+    if let Some(row) = WINDOWS.iter().find(|row| row.name == name) {
+        let help = format!("name it outside of the function: measure m = {}; and read facts.m here", row.form);
+        return diagnostic.help(help);
+    }
     match (near, name) {
         (Some(near), _) => diagnostic.help(format!("did you mean '{near}'?")),
         (None, "bins") => {

@@ -174,7 +174,7 @@ fn out_of_order(read: Read, ahead: &str) -> Option<&'static str> {
     const ORDER: &str = "the order of a rule is: in, when, for, once, =>, per second, then";
     Some(match (read, ahead) {
         (Read::Name | Read::Stage, "for" | "once" | "per" | "then" | "=>") => ORDER,
-        (Read::Condition, "in" | "per" | "then") => ORDER,
+        (Read::Condition, "in" | "per" | "then") | (Read::Once, "for" | "in" | "per") => ORDER,
         (Read::Value, "once" | "for" | "in" | "when") => ORDER,
         (Read::Condition, ",") => "conditions are joined with '&&' (and) or '||' (or)",
         (Read::Value | Read::Second, "to") => "'to' stands behind what ends the attempt: then fail to \"nearest\"",

@@ -67,6 +67,9 @@ fn unit(source: &SourceText, number: &Range<usize>, word: &Range<usize>) -> Opti
     let is_time = &text[word_before(text, number.start)] == "for";
     let help = match (*ours, is_time) {
         ("seconds", true) => format!("write for {converted} seconds"),
+        ("radians", _) if unit.starts_with("deg") => {
+            format!("write {written} for a fact whose name ends in _deg, {converted:?} for one in radians")
+        }
         _ => format!("write {converted:?} ({ours})"),
     };
     let message = if is_time {

@@ -40,13 +40,18 @@ pub(super) fn observed(plan: &Plan, trial: &LintTrial, exploits: &Exploits, find
         let message = format!("every one of {} steps was rewarded alike, by {first}", trial.transitions.len());
         let label = "no action was ever better than another";
         findings.push(Finding::warning(plan, "W-NO-CHOICE", place(plan), message).say(label, HELP));
-    } else if let Some(mean) = alike(trial, exploits) {
+    } else if let Some(mean) = alike(trial, exploits).filter(|_| !reads_the_action(plan)) {
         let message = "whatever the robot does, it is rewarded alike";
         let earned = mean * WINDOW_STEPS as f64;
         let label =
             format!("at random it earns {earned:.1} in 400 steps; the best, spinning and turning back the same");
         findings.push(Finding::warning(plan, "W-NO-CHOICE", place(plan), message).say(label, HELP));
     }
+}
+
+/// Whether the reward reads what was commanded, which no chance can hide.
+fn reads_the_action(plan: &Plan) -> bool {
+    plan.behaviour.outline().groups.iter().any(|group| group == "action")
 }
 
 /// What a step earns at random, if no other behaviour earns more or less than chance explains.

@@ -28,7 +28,7 @@ pub(super) fn check_firing(plan: &Plan, trial: &LintTrial, exploits: &Exploits, 
         let needed = u64::from(judge.held(index).1);
         let fixed = plan.behaviour.fixed_value(index).is_some() || rule.then.is_some();
         let found = match () {
-            () if seen.fired == 0 => never(plan, index, seen, needed, trial.steps()),
+            () if seen.fired == 0 => never(plan, index, seen, needed, trial),
             () if needed == 1 && fixed && seen.reached >= ENOUGH && seen.fired == seen.reached => {
                 Some(always(plan, index, seen))
             }
@@ -42,7 +42,19 @@ fn name(plan: &Plan, rule: usize) -> String {
     format!("rule \"{}\"", printable(&plan.behaviour.rules()[rule].name))
 }
 
-fn never(plan: &Plan, index: usize, seen: &RuleTrial, needed: u64, steps: u64) -> Option<Finding> {
+/// The first stage of a rule that belongs to stages of which the trial entered none.
+fn never_entered<'a>(plan: &'a Plan, index: usize, trial: &LintTrial) -> Option<&'a str> {
+    let (own, names) = (plan.behaviour.outline().rules[index].stages?, &plan.settings.stages);
+    let within = plan.state_map().ok()?.states() / names.len().max(1);
+    let is_own = |stage: usize| own & (1 << stage) != 0;
+    if trial.transitions.iter().any(|step| is_own(step.state / within.max(1))) {
+        return None;
+    }
+    names.iter().enumerate().find(|(stage, _)| is_own(*stage)).map(|(_, name)| name.as_str())
+}
+
+fn never(plan: &Plan, index: usize, seen: &RuleTrial, needed: u64, trial: &LintTrial) -> Option<Finding> {
+    let (steps, goal) = (trial.steps(), plan.behaviour.fixed_value(index).is_some_and(|value| value > 0.0));
     let rule = &plan.behaviour.outline().rules[index];
     let (name, span) = (name(plan, index), rule.condition_span.clone());
     if seen.held > 0 && seen.forestalled == seen.held {
@@ -53,6 +65,16 @@ fn never(plan: &Plan, index: usize, seen: &RuleTrial, needed: u64, steps: u64) -
         let label = format!("held in {} of {} steps, each time too late", seen.held, seen.looked);
         let help = "put it before the other rule, or make the two conditions exclude each other";
         return Some(Finding::warning(plan, "W-RULE-SHADOWED", span, message).say(label, help));
+    }
+    if let Some(stage) = never_entered(plan, index, trial) {
+        if goal || may_be_rare(&seen.facts) {
+            return None;
+        }
+        let message =
+            format!("{name} never fired: the stage \"{}\" was not entered in {steps} steps", printable(stage));
+        let help = "look at the rule that leads to this stage: its condition may be out of reach";
+        let label = "was not asked for";
+        return Some(Finding::warning(plan, "W-RULE-NEVER", span, message).say(label, help));
     }
     if needed > 1 && seen.held > 0 {
         let period_s = plan.settings.run.period_s;
@@ -67,7 +89,6 @@ fn never(plan: &Plan, index: usize, seen: &RuleTrial, needed: u64, steps: u64) -
         return Some(Finding::warning(plan, "W-PERSISTENCE", place, message).say(label, help));
     }
     // Goals are rare before anything is learned.
-    let goal = plan.behaviour.fixed_value(index).is_some_and(|value| value > 0.0);
     if goal || may_be_rare(&seen.facts) {
         return None;
     }

@@ -60,6 +60,7 @@ fn help(allowed: &Allowed, limit: f64) -> String {
             format!("speeds are in m/s: {limit} km/h are {} m/s", short(limit / 3.6))
         }
         Unit::MetresPerSecond if fits(centi) => format!("speeds are in m/s: {limit} cm/s are {} m/s", short(centi)),
+        Unit::Degrees => "angles of this fact are in degrees: compare it with a number between these two".to_owned(),
         Unit::Share if fits(centi) => format!("shares go from 0 to 1: {limit} % are {}", short(centi)),
         _ => "compare it with a number between these two, or leave the comparison out".to_owned(),
     }

@@ -42,7 +42,7 @@ pub(super) fn print_one(console: &mut Console, plan: &Plan, summary: &Summary) -
     if !summary.starts.is_empty() {
         console.line(&format!("starts:    {}", starts(&summary.starts)))?;
     }
-    print_figures(console, test, base_lines)
+    print_figures(console, plan, test, base_lines)
 }
 
 /// How much each policy drove that the script uses.
@@ -166,7 +166,7 @@ pub(super) fn print_combination(console: &mut Console, figures: &CombinationFigu
 }
 
 /// The figures of a test for a person, and in words what a reward cannot see.
-pub(crate) fn print_figures(console: &mut Console, test: &TestFigures, lines: &BaseLines) -> Printed {
+pub(crate) fn print_figures(console: &mut Console, plan: &Plan, test: &TestFigures, lines: &BaseLines) -> Printed {
     let untrained = &lines.untrained;
     console.line(&format!(
         "test:      {} steps, {} ({:.1} per 1000, untrained {:.1}), {}, {:.2} m/s",
@@ -180,7 +180,7 @@ pub(crate) fn print_figures(console: &mut Console, test: &TestFigures, lines: &B
     if let Some(forbidden) = test.forbidden_per_1000 {
         console.line(&format!("           guards took actions away in {forbidden:.1} of 1000 steps"))?;
     }
-    if test.goals + test.restarts > 0 {
+    if test.goals + test.restarts > 0 || plan.behaviour.has_goals() {
         let restarts =
             if test.restarts > 0 { format!("; {}", counted(test.restarts, "restart")) } else { String::new() };
         console.line(&format!(

@@ -12,6 +12,7 @@ use engine::experiment::{
 };
 use insight::folder::{IfTaken, RunFolder, SeedResult};
 use insight::record::{check_recording, record};
+use insight::words::short;
 use pack::Runnable;
 
 use super::check;
@@ -164,11 +165,12 @@ fn run_all(
     let plain = bar.is_hidden() && seeds.len() == 1;
     let report = |progress: Progress| {
         bar.inc(WINDOW_STEPS);
-        bar.set_message(format!("reinforcement per 400: {}", progress.reinforcement));
+        bar.set_message(format!("reinforcement per 400: {}", short(progress.reinforcement)));
         if plain {
             console.note(&format!(
                 "step {}: reinforcement of the last 400 steps {}",
-                progress.steps, progress.reinforcement
+                progress.steps,
+                short(progress.reinforcement)
             ));
         }
     };

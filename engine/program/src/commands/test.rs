@@ -77,7 +77,7 @@ pub(crate) fn run(arguments: &TestArguments, console: &mut Console) -> Result<u8
     }
     print_uses(console, &tested.uses)?;
     print_verdict(console, &verdict)?;
-    print_figures(console, &tested.figures, &lines)?;
+    print_figures(console, &plan, &tested.figures, &lines)?;
     if stop.load(Ordering::Relaxed) {
         return Ok(INTERRUPTED);
     }

@@ -193,6 +193,7 @@ fn every_form_of_a_rule_is_native() {
         "fired(\"mark\") > 2 && since(\"mark\") < 4.0",
         "stage.at(\"b\") && stage.seconds > 20",
         "near < gap",
+        "clamp(gap, 0.0, 1) < 0.5 && sign(action.angular) == 1",
         "time.attempt_s > 60",
     ] {
         let behaviour = parse(&format!("{head} rule \"x\" when {flag} for 2 seconds once => 0.1 * gap per second;"));
