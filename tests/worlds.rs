@@ -331,3 +331,14 @@ fn a_world_made_by_rule_is_written_once_and_is_the_world_of_its_name() {
     let named = hash(&["run", "own.rhai", "--json"]);
     assert_eq!(named, hash(&["run", "own.rhai", "--world", "corridors-7.toml", "--json", "--out", "file"]));
 }
+
+#[test]
+fn an_empty_image_is_no_fault_where_the_state_shows_no_view() {
+    let script = "world(\"object\");\ncamera(#{ noise: 0.0 });\nrun(#{ steps: 800 });\n".to_owned() + RULES;
+    let blind = plan(&format!("{script}state(bins(laser.nearest, [1.0, 2.0]));\n"));
+    assert_eq!(learned(&blind, 1).1.len(), 800);
+    // On that floor the camera sees one colour in some places.
+    let seeing = plan(&format!("{script}filter(\"threshold\", #{{ threshold: 50.0 }});\n"));
+    let stopped = learn_into(&seeing, 1, &AtomicBool::new(false), &|_| (), &mut Ledger::new(&seeing, 800));
+    assert_eq!(stopped.unwrap_err().error.code, "E-CAMERA-BLANK");
+}

@@ -129,6 +129,12 @@ impl Settings {
         !(self.state.is_empty() && self.stages.is_empty() && self.further_views.is_empty())
     }
 
+    /// Whether a state shows what a view sees.
+    #[must_use]
+    pub fn sees(&self) -> bool {
+        self.state.is_empty() || self.state.iter().any(|part| matches!(part, PartSettings::View(_)))
+    }
+
     /// All views, to be changed.
     pub fn views_mut(&mut self) -> impl Iterator<Item = &mut ViewSettings> {
         std::iter::once(&mut self.view).chain(&mut self.further_views)

@@ -6,6 +6,7 @@ use std::sync::atomic::AtomicBool;
 use engine::diagnostic::Told;
 use engine::experiment::{Overrides, Plan};
 use insight::lint::{self, Exploits, Report, Severity};
+use insight::store::{policy_files, with_policies};
 use insight::words::short;
 use pack::Runnable;
 
@@ -19,6 +20,10 @@ pub(crate) fn run(arguments: &CheckArguments, console: &mut Console) -> std::res
     let checked = open_to_look(&arguments.behaviour, &overrides, &arguments.filters, false).and_then(|runnable| {
         // A pack's filters stand in a folder that lives as long as it does.
         let Runnable { plan, unpacked: _unpacked, .. } = runnable;
+        // Policies that are there must fit; those that are not may be learned later.
+        if plan.behaviour.hands_over() && policy_files(&plan).len() == plan.settings.policies.len() {
+            with_policies(plan.clone())?;
+        }
         lint::check_behaviour(&plan).map(|report| (plan, report))
     });
     let (plan, report) = match checked {
@@ -69,6 +74,11 @@ fn print(console: &mut Console, plan: &Plan, report: &Report) -> std::result::Re
     }
     if let Some(exploits) = &report.exploits {
         print_exploits(console, exploits)?;
+    }
+    if plan.behaviour.hands_over() {
+        let (there, named) = (policy_files(plan).len(), plan.settings.policies.len());
+        let missing = if there < named { format!("; {} not there yet", named - there) } else { String::new() };
+        console.line(&format!("uses:      {named} policies, which drive in no trial{missing}"))?;
     }
     console.line(&format!(
         "checked:   {} in {}, {} steps: {}",
