@@ -33,7 +33,7 @@ fn the_page_of_a_run_plays_scrubs_and_explains() {
     bench.engine(&["run", "short.rhai"]);
     let path = bench.path().join("runs/short/1/report.html");
     let Some(mut page) = open(&format!("file://{}", path.display())) else { return };
-    let step = "Number(document.querySelector('#moment b').textContent.replace(',', ''))";
+    let step = "Number((document.querySelector('#moment b')?.textContent ?? '-1').replace(',', ''))";
     // It opens on the test, playing, with the verdict above.
     page.wait_for(&format!("{step} > 0 && document.getElementById('play').textContent === 'Pause'"));
     assert_eq!(page.value("document.querySelector('[data-phase=test]').ariaPressed"), "true");
@@ -109,7 +109,7 @@ fn all_that_drives_by_itself_is_drawn() {
              return count > 20 ? sum / count : null; }})()"
         ))
     };
-    let step = "Number(document.querySelector('#moment b').textContent.replace(',', ''))";
+    let step = "Number((document.querySelector('#moment b')?.textContent ?? '-1').replace(',', ''))";
     page.wait_for(&format!("{step} === 0"));
     let (pink, green) = ("250, 20, 200", "20, 230, 40");
     let before = [pink, green].map(|colour| column(&mut page, colour).as_f64().expect(colour));

@@ -199,3 +199,27 @@ fn the_gallery_has_a_card_for_each_pack_and_no_script() {
     assert!(!page.contains("<script") && !page.contains("http://") && !page.contains("https://"));
     assert!(file.starts_with("ada-short"));
 }
+
+#[test]
+fn a_pack_goes_through_all_the_worlds_of_its_script() {
+    let bench = Bench::new();
+    let script = bench.read("short.rhai").replace("world(\"small\");", "worlds([\"small\", \"corridors:1-2\"]);");
+    bench.write("many.rhai", script);
+    bench.ok(&["pack", "new", "ada/many", "--from", "many.rhai", "--out", "many"]);
+    let title = |from: &str, out: &str| {
+        bench.engine(&["run", from, "--out", out]);
+        let summary: serde_json::Value = serde_json::from_str(&bench.read(&format!("{out}/summary.json"))).unwrap();
+        (summary["world"].clone(), summary["state_hash"].clone())
+    };
+    let plain = title("many.rhai", "plain");
+    assert_eq!(plain.0, "small and 2 more");
+    assert_eq!(title("many", "packed"), plain);
+    bench.ok(&["replay", "packed", "--verify"]);
+}
+
+#[test]
+fn a_run_in_worlds_from_the_command_line_is_verified() {
+    let bench = Bench::new();
+    bench.engine(&["run", "short.rhai", "--world", "corridors:1-3", "--out", "out"]);
+    bench.ok(&["replay", "out", "--verify"]);
+}

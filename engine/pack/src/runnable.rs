@@ -14,7 +14,8 @@ use engine::experiment::{Overrides, Plan};
 use engine::filter::{Catalogue, Sources};
 use engine::learner::Policy;
 use engine::script::{Behaviour, ParamValues};
-use engine::world::Layout;
+use engine::settings::WorldShare;
+use engine::world::{FamilyRange, Layout, WorldSet};
 use insight::store::{PolicyText, policy_from_toml, policy_to_toml, with_policy_texts};
 
 /// A pack's behaviour, ready to be learned or tested.
@@ -52,11 +53,11 @@ impl Pack {
         let behaviour =
             Arc::new(Behaviour::parse_in(manifest.edition()?, stem, self.text(script)?, &bodies, &ParamValues::new())?);
         let settings = behaviour.settings().clone();
-        let layout = Arc::new(Layout::parse(self.world(&behaviour, depends)?, &settings.robot.body)?);
+        let worlds = self.worlds(&behaviour, depends)?;
         let unpacked = self.unpack_filters(depends)?;
         sources.folders.extend(unpacked.iter().map(|folder| folder.path().to_owned()));
         let filters = Arc::new(Catalogue::new(sources)?);
-        let plan = Plan::with_layout(Arc::clone(&behaviour), settings, layout, filters)?.with_changes(overrides)?;
+        let plan = Plan::with_worlds(Arc::clone(&behaviour), settings, worlds, filters)?.with_changes(overrides)?;
         let plan = with_policy_texts(plan, self.policies(&behaviour)?)?;
         Ok(Runnable { plan, unpacked })
     }
@@ -76,11 +77,34 @@ impl Pack {
         })
     }
 
-    fn world(&self, behaviour: &Behaviour, depends: &[Self]) -> Result<SourceText> {
-        if let Some(path) = &self.manifest().entry.world {
+    /// The worlds of the script: files of the pack or of what it builds on, and worlds made by rule.
+    fn worlds(&self, behaviour: &Behaviour, depends: &[Self]) -> Result<WorldSet> {
+        let settings = behaviour.settings();
+        let alone = [WorldShare { name: settings.world.clone(), weight: 1 }];
+        let shares = if settings.worlds.is_empty() { &alone[..] } else { &settings.worlds };
+        let mut loaded = Vec::new();
+        for WorldShare { name, weight } in shares {
+            let texts = match FamilyRange::of(name) {
+                Some(Ok(range)) => range.texts().map(|(name, text)| SourceText::new(name, text)).collect(),
+                Some(Err((message, help))) => {
+                    let wrong = Diagnostic::new("E-WORLD-FILE", message).help(help);
+                    return at(behaviour, "world", wrong, "no such worlds").fail();
+                }
+                None => vec![self.world(behaviour, name, depends)?],
+            };
+            let layouts = texts.into_iter().map(|text| Layout::parse(text, &settings.robot.body).map(Arc::new));
+            loaded.push((*weight, layouts.collect::<Result<Vec<_>>>()?));
+        }
+        WorldSet::new(loaded).ok_or_else(|| {
+            let message = format!("the worlds of {} cannot be shared out", self.title());
+            Box::new(malformed("E-PACK-WORLD", message).help("its author gives each a whole weight from 1"))
+        })
+    }
+
+    fn world(&self, behaviour: &Behaviour, name: &str, depends: &[Self]) -> Result<SourceText> {
+        if let Some(path) = self.manifest().entry.world.as_ref().filter(|_| behaviour.settings().worlds.is_empty()) {
             return self.text(path.as_str());
         }
-        let name = &behaviour.settings().world;
         let folder = self.script_folder();
         let tried: Vec<Option<String>> = if name.contains(['/', '\\']) || name.ends_with(".toml") {
             vec![inside(folder, name)]

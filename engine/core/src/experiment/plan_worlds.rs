@@ -11,9 +11,9 @@ use crate::script::{Behaviour, Nameable, Unread};
 use crate::settings::{Settings, VariedKey, WorldShare};
 use crate::world::{FAMILIES, FamilyRange, FloorSquares, Layout, WorldSet};
 
-/// The most worlds of a script, and of a command line.
+/// The most worlds of a script, and of a command line: each takes half a megabyte.
 const MOST_WORLDS: usize = 64;
-const MOST_NAMED: usize = 4_096;
+const MOST_NAMED: usize = 256;
 
 /// Loads every world that the settings name; what is wrong with one is added to the mistakes. `named` says that the command
 /// line named them.

@@ -121,8 +121,9 @@ pub(super) fn finish(
     let body = None;
     let mut setup = SetupReader { code, ast, settings, places, unread, mistakes, call, entries, bins, body };
     let mut calls = log.close();
-    for call in calls.extract_if(.., |call| call.name == "edition") {
-        match setup.edition(&call) {
+    // It stays in its place for now: views know what belongs to them by the number of the call.
+    for call in calls.iter().filter(|call| call.name == "edition") {
+        match setup.edition(call) {
             Ok(said) => edition = said,
             Err(wrong) => setup.mistakes.add(*wrong),
         }
@@ -138,7 +139,7 @@ pub(super) fn finish(
         }
     }
     setup.views(&mut calls);
-    for call in calls {
+    for call in calls.into_iter().filter(|call| call.name != "edition") {
         setup.call = call.position;
         if let Err(wrong) = setup.apply(call.name, call.arguments) {
             setup.mistakes.add(*wrong);

@@ -50,7 +50,12 @@ pub fn upgrade(path: &Path) -> Result<Upgrade> {
     }
     // What it set and how its attempts end must be what they were.
     let new = read(SourceText::new(path, after.clone()), Edition::NEWEST)?;
-    if new.settings() != old.settings() || new.rules().len() != old.rules().len() {
+    let mut settings = old.settings().clone();
+    if settings.worlds.is_empty() && settings.randomise.is_empty() {
+        // A word for an outcome decides how long the robot stays in one of several worlds, and nothing in one.
+        settings.run.stay_steps = new.settings().run.stay_steps;
+    }
+    if *new.settings() != settings || new.rules().len() != old.rules().len() {
         let message = format!("'{}' cannot be upgraded by itself", printable(&path.display().to_string()));
         let help = format!(
             "write edition({}); into it, and learner(\"ttd\"); if it names no learner",
@@ -65,8 +70,27 @@ pub fn upgrade(path: &Path) -> Result<Upgrade> {
 fn outcomes(behaviour: &Behaviour) -> (Vec<Edit>, Vec<String>) {
     let (compiled, mut edits, mut changes) = (behaviour.compiled(), Vec::new(), Vec::new());
     let Ok(code) = source::check_text(compiled.source.clone()) else { return (edits, changes) };
-    for rule in compiled.rules.iter().filter(|rule| rule.then == Some(Then::Recover)) {
+    // The reward of a step is the sum over the rules that fired: those above that end nothing must not turn it.
+    let (mut least, mut most) = (0.0_f64, 0.0_f64);
+    for (index, rule) in compiled.rules.iter().enumerate() {
+        let (below, above) = (least, most);
+        let fixed = behaviour.fixed_value(index);
+        if rule.then.is_none() {
+            least += fixed.map_or(f64::NEG_INFINITY, |value| value.min(0.0));
+            most += fixed.map_or(f64::INFINITY, |value| value.max(0.0));
+        }
+        if rule.then != Some(Then::Recover) {
+            continue;
+        }
         let Ok(value) = code.source.text[rule.value_span.clone()].trim().parse::<f64>() else { continue };
+        let sure = match value {
+            negative if negative < 0.0 => negative + above < 0.0,
+            positive if positive > 0.0 => positive + below > 0.0,
+            _ => below == 0.0 && above == 0.0,
+        };
+        if !sure {
+            continue;
+        }
         let word = match value {
             below if below < 0.0 => "fail",
             above if above > 0.0 => "goal",

@@ -16,7 +16,6 @@ use engine::geometry::Twist;
 use engine::learner::{Policy, PolicyRow, PooledSums, Pools};
 use engine::settings::{FilterSettings, GridSettings, Settings, ViewSettings};
 use engine::state::{GridMap, MAX_POOLED_STATES, MAX_STATES, StateMap};
-use engine::world::FamilyRange;
 
 /// The name of the file in a run's folder.
 pub const POLICY_FILE: &str = "policy.toml";
@@ -113,12 +112,13 @@ pub struct StoredPolicy {
 /// # Errors
 /// If the plan's states do not come from a grid, which is what this format has room for.
 pub fn policy_to_toml(plan: &Plan, policy: &Policy, run: Option<&str>) -> Result<String> {
-    text_of(plan.behaviour.name(), &plan.settings, &plan.filters, (&*plan.state_map()?, policy), run)
+    let worlds = worlds_of(plan);
+    text_of(plan.behaviour.name(), (&plan.settings, worlds), &plan.filters, (&*plan.state_map()?, policy), run)
 }
 
 fn text_of(
     behaviour: &str,
-    settings: &Settings,
+    (settings, worlds): (&Settings, Vec<String>),
     filters: &Catalogue,
     (map, policy): (&dyn StateMap, &Policy),
     run: Option<&str>,
@@ -151,7 +151,7 @@ fn text_of(
         occupied: grid.as_ref().map(|grid| grid.occupied),
         fill: grid.as_ref().map(|grid| grid.fill),
         remember_s: grid.as_ref().map(|grid| grid.remember_s).filter(|seconds| *seconds > 0.0),
-        worlds: worlds_of(settings),
+        worlds,
         randomise: settings.randomise.iter().map(|varied| format!("{}: {}", varied.key, varied.from.words())).collect(),
         states: policy.states(),
         temperature: policy.temperature(),
@@ -166,11 +166,18 @@ fn text_of(
 }
 
 /// Of several worlds each with its weight: `room: 3`.
-fn worlds_of(settings: &Settings) -> Vec<String> {
-    let shares = settings.worlds.iter().map(|share| format!("{}: {}", share.name, share.weight));
-    // Worlds made by rule may be several under one name.
-    let range = settings.worlds.is_empty() && FamilyRange::count_of(&settings.world) > 1;
-    shares.chain(range.then(|| settings.world.clone())).collect()
+/// Several worlds by name with their weights, those of the home world first.
+fn worlds_of(plan: &Plan) -> Vec<String> {
+    if plan.worlds.further().is_empty() {
+        return Vec::new();
+    }
+    let mut layouts = plan.worlds.layouts().iter();
+    let share = |(weight, count): (u32, usize)| {
+        let first = layouts.by_ref().take(count).map(|layout| layout.name.as_str()).reduce(|first, _| first);
+        let more = if count > 1 { format!(" and {} more", count - 1) } else { String::new() };
+        format!("{}{more}: {weight}", first.unwrap_or_default())
+    };
+    plan.worlds.shares().into_iter().map(share).collect()
 }
 
 impl StoredPolicy {

@@ -72,3 +72,26 @@ fn what_is_no_script_is_not_upgraded() {
     std::fs::write(&path, "description = \"a room\"").unwrap();
     assert!(upgrade(&path).is_err());
 }
+
+#[test]
+fn an_outcome_that_the_rules_above_may_turn_is_left_as_it_is() {
+    // With the first rule, the second one's step is worth 2 - 1 = 1: a goal.
+    let turned = "rule \"way\" when robot.linear > 0.1 => 2;\nrule \"a\" when robot.contact => -1 then recover;\n";
+    assert!(upgraded(turned).after.ends_with(turned));
+    let read = turned.replace("=> 2", "=> robot.linear");
+    assert!(upgraded(&read).after.ends_with(&read));
+    let sure = turned.replace("=> 2", "=> -2");
+    assert!(upgraded(&sure).after.ends_with(&sure.replace("recover", "fail")));
+}
+
+#[test]
+fn every_shipped_script_can_be_upgraded() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts");
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|ending| ending == "rhai") {
+            let after = upgrade(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display())).after;
+            assert!(after.contains("edition(2);"), "{}", path.display());
+        }
+    }
+}

@@ -6,7 +6,7 @@ fn map(settings: &Settings) -> GridMap {
 }
 
 fn written(settings: &Settings) -> Result<String> {
-    text_of("wall", settings, &Catalogue::linked_in(), (&map(settings), &policy()), None)
+    text_of("wall", (settings, Vec::new()), &Catalogue::linked_in(), (&map(settings), &policy()), None)
 }
 
 fn read(source: &SourceText, settings: &Settings) -> Result<Policy> {
