@@ -30,6 +30,24 @@ fn an_upgraded_script_learns_the_same_table() {
     assert_eq!(learned(&bench), before);
 }
 
+#[cfg(unix)]
+#[test]
+fn an_upgrade_goes_through_a_link_and_keeps_the_rights_of_the_file() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let bench = Bench::new();
+    let (file, link) = (bench.path().join("short.rhai"), bench.path().join("link.rhai"));
+    std::fs::set_permissions(&file, PermissionsExt::from_mode(0o640)).unwrap();
+    symlink(&file, &link).unwrap();
+    bench.ok(&["upgrade", "link.rhai", "--write"]);
+    assert!(std::fs::symlink_metadata(&link).unwrap().is_symlink());
+    assert!(bench.read("short.rhai").starts_with("edition(2);"));
+    assert_eq!(std::fs::metadata(&file).unwrap().permissions().mode() & 0o777, 0o640);
+    std::fs::write(&file, SCRIPT).unwrap();
+    std::fs::set_permissions(&file, PermissionsExt::from_mode(0o444)).unwrap();
+    assert!(bench.failure(&["upgrade", "short.rhai", "--write"]).starts_with("exit status 6"));
+    assert_eq!(bench.read("short.rhai"), SCRIPT);
+}
+
 #[test]
 fn a_run_says_its_edition_and_one_that_says_none_is_of_the_first() {
     let bench = Bench::new();

@@ -122,7 +122,7 @@ fn compiled(
         None => {
             let message = "a guard reads facts, measures, numbers and the functions of the table only".to_owned();
             explain::mistake(&code.source, "E-SCRIPT-GUARD", first(written.condition), message, "something else")
-                .help("write the condition out: laser.front < 0.4 && robot.speed > 0.1")
+                .help("write the condition out: laser.front < 0.4 && robot.linear > 0.1")
                 .fail()
         }
     });

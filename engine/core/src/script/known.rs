@@ -6,7 +6,7 @@ use super::positions::{first, operand_end};
 use super::source::Code;
 use crate::diagnostic::{Diagnostic, Mistakes};
 use crate::judge::explain::offset;
-use crate::judge::expression::Arithmetic;
+use crate::judge::expression::{Arithmetic, Comparison};
 use crate::judge::functions::{OF_ONE, OF_ONE_FRACTION, OF_TWO, OF_TWO_FRACTION};
 use rhai::{AST, ASTNode, Expr, FnCallExpr, Scope, Stmt};
 
@@ -74,6 +74,16 @@ impl Looking<'_> {
             let label = format!("{a} / {b} is {} here", a / b);
             return Some(Diagnostic::new("E-SCRIPT-TYPE", message).at(source, at..at + 1, label).help(help));
         }
+        // Two texts have an order.
+        if let Some(side) = call.args.iter().find(|side| self.has_no_order(side))
+            && !call.args.iter().all(|side| self.has_no_order(side) || matches!(side, Expr::StringConstant(..)))
+            && Comparison::of(&call.name).is_some_and(Comparison::orders)
+        {
+            let (start, end) = (offset(source, first(side)), operand_end(self.code, side));
+            let message = format!("'{}' is no number: it cannot be more or less", &source.text[start..end]);
+            let wrong = Diagnostic::new("E-SCRIPT-TYPE", message).at(source, start..end, "a text, an array or a map");
+            return Some(wrong.help("compare with a number, or with one value of it: values[0]"));
+        }
         let Some(Known::Fraction(value)) = self.known(expr) else { return None };
         let help = "look for a division by 0, or the root or logarithm of a negative number";
         let found = Diagnostic::new("E-SCRIPT-TYPE", "this gives no number").at(source, place, "always NaN").help(help);
@@ -112,6 +122,13 @@ impl Looking<'_> {
         }
         let value = self.constants.get(access.root)?;
         value.as_int().map(Known::Whole).or_else(|_| value.as_float().map(Known::Fraction)).ok()
+    }
+
+    /// Whether it is a constant that is neither more nor less than anything.
+    fn has_no_order(&self, expr: &Expr) -> bool {
+        let alone = |access: &Access<'_>| access.links.is_empty() && !(self.in_function && access.is_local);
+        let value = Access::of(expr).filter(alone).and_then(|access| self.constants.get(access.root));
+        value.is_some_and(|value| value.is_string() || value.is_array() || value.is_map())
     }
 
     fn call(&self, call: &FnCallExpr) -> Option<Known> {

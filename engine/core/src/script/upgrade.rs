@@ -44,10 +44,16 @@ pub fn upgrade(path: &Path) -> Result<Upgrade> {
         edits.push(newest(&old, &mut changes));
     }
     edits.sort_by_key(|(span, _)| std::cmp::Reverse(span.start));
-    let mut after = before.text.to_string();
+    // Places are counted behind a byte order mark.
+    let (mark, text) = match before.text.strip_prefix('\u{feff}') {
+        Some(text) => ("\u{feff}", text),
+        None => ("", &*before.text),
+    };
+    let mut after = text.to_owned();
     for (span, text) in edits {
-        after.replace_range(span, &text);
+        after.replace_range(span, &if before.text.contains("\r\n") { text.replace('\n', "\r\n") } else { text });
     }
+    after.insert_str(0, mark);
     // What it set and how its attempts end must be what they were.
     let new = read(SourceText::new(path, after.clone()), Edition::NEWEST)?;
     let mut settings = old.settings().clone();

@@ -15,6 +15,7 @@ pub(crate) struct ReferenceArguments {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = "Exit status: 0 done; 2 usage; 3 bad script; 4 script limit; 6 files and disk.")]
 pub(crate) struct UpgradeArguments {
     /// The script
     pub(crate) script: PathBuf,

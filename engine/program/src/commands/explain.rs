@@ -80,7 +80,11 @@ pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::r
     let pictures = stems.map(|stem| out.join(format!("{stem}.png")).display().to_string());
     let (behaviour, world) = (plan.behaviour.name().to_owned(), plan.worlds.title());
     let (before, choice) = ((phase == Phase::Learning).then_some(step), [reasons.state.index, reasons.action]);
-    let value = ValueReasons::of(plan, *seed, &recorded.log.learning, before, choice)?;
+    // A policy that is used chose by values of its own.
+    let value = match reasons.used {
+        Some(_) => None,
+        None => ValueReasons::of(plan, *seed, &recorded.log.learning, before, choice)?,
+    };
     let report = StepReport { behaviour, world, seed: *seed, phase: name, reasons, value, pictures };
     console.json(&report)?;
     print(console, playback.plan(), &report)?;
@@ -137,7 +141,7 @@ fn print(console: &mut Console, plan: &Plan, report: &StepReport) -> std::result
         console.line(&format!("parameter: {} = {}", printable(&param.name), param.shown()))?;
     }
     let how = match reasons.explored {
-        _ if !plan.learns() && reasons.used.is_none() => "",
+        _ if !plan.learns() || reasons.used.is_some() => "",
         true => " (tried, not the best one known)",
         false => " (the best one known)",
     };

@@ -5,7 +5,7 @@ use std::sync::atomic::Ordering;
 use engine::diagnostic::{Diagnostic, printable};
 use engine::experiment::{CertaintyGrid, Decider, Overrides, base_lines};
 use engine::filter::Sources;
-use engine::settings::Settings;
+use engine::settings::{LearnerKind, Settings};
 use engine::verdict::{BaseLines, SuccessVerdict, TestFigures};
 use insight::folder::TestFolder;
 use insight::store::StoredRun;
@@ -50,7 +50,7 @@ pub(crate) fn run(arguments: &TestArguments, console: &mut Console) -> Result<u8
             StoredRun { plan, ..stored }
         }
     };
-    check_effect(&arguments.set)?;
+    check_effect(&arguments.set, plan.settings.learner.kind)?;
     let folder = arguments.out.as_ref().map(|out| TestFolder::create(out, arguments.force)).transpose()?;
     let stop = on_ctrl_c()?;
     let test_seed = arguments.seed.unwrap_or(seed);
@@ -99,8 +99,10 @@ fn check_states(learned: &Settings, now: &Settings) -> engine::diagnostic::Resul
 }
 
 /// Refuses settings that a test has no use for.
-fn check_effect(set: &[String]) -> engine::diagnostic::Result<()> {
-    let learns = |key: &str| key == "run.steps" || key.starts_with("learner.") && !FROZEN.contains(&key);
+fn check_effect(set: &[String], kind: LearnerKind) -> engine::diagnostic::Result<()> {
+    // What remembers its steps has a temperature of its own.
+    let chooses = |key: &str| kind != LearnerKind::Memory && FROZEN.contains(&key);
+    let learns = |key: &str| key == "run.steps" || key.starts_with("learner.") && !chooses(key);
     let key = set.iter().filter_map(|pair| pair.split('=').next()).map(str::trim).find(|key| learns(key));
     let Some(key) = key else { return Ok(()) };
     let message = format!("'{}' says how to learn, and nothing is learned in a test", printable(key));

@@ -95,3 +95,11 @@ fn every_shipped_script_can_be_upgraded() {
         }
     }
 }
+
+#[test]
+fn line_ends_and_a_byte_order_mark_stay_as_they_are() {
+    let text = format!("\u{feff}world(\"room\");\r\n{RULE}\r\n");
+    let after = upgraded(&text).after;
+    let begin = "\u{feff}edition(2);\r\nlearner(#{ kind: \"ttd\" });\r\nworld(\"room\");\r\n";
+    assert_eq!(after, format!("{begin}{}\r\n", RULE.replace("recover", "fail")));
+}
