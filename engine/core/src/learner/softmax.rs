@@ -26,7 +26,7 @@ impl Softmax {
         }
     }
 
-    /// The same at one temperature, whatever the visits.
+    /// This softmax at one temperature, whatever the visits.
     #[must_use]
     pub(super) fn at_temperature(self, temperature: f64) -> Self {
         Self { start: temperature, end: temperature, ..self }
@@ -39,7 +39,7 @@ impl Softmax {
         self.choose_at(values, allowed, temperature, random)
     }
 
-    /// The same at a temperature above 0.
+    /// An index into `values`, drawn among those that are allowed at a temperature above 0.
     pub(super) fn choose_at(
         &mut self,
         values: &[f64],

@@ -98,7 +98,7 @@ impl PastSteps {
         &self.ring[self.place(back)]
     }
 
-    /// The same, to be changed.
+    /// The step so many back, 0 the latest, to be changed.
     pub(super) fn back_mut(&mut self, back: usize) -> &mut PastStep {
         let place = self.place(back);
         &mut self.ring[place]

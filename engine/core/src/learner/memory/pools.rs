@@ -179,7 +179,7 @@ impl Pools {
         self.row(&room.members, &mut room.values);
     }
 
-    /// The same pools, learning no more: one try of today weighs 1.
+    /// These pools as they learn no more: one try of today weighs 1.
     pub(super) fn frozen(&self) -> Option<Self> {
         Self::from_sums(&self.to_sums(), self.actions)
     }
