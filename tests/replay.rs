@@ -160,8 +160,45 @@ fn what_is_drawn_of_a_checked_run_of_many_seeds_and_of_a_combination_is_compared
     bench.write("both.rhai", script.replace("steps: 800, ", ""));
     bench.engine(&["run", "both.rhai", "--seeds", "2", "--out", "b"]);
     bench.ok(&["replay", "b", "--verify"]);
+    let table = bench.read("b/2/disagreements.csv");
+    bench.write("b/2/disagreements.csv", format!("{table}1"));
+    assert!(bench.failure(&["replay", "b", "--verify"]).contains("disagreements.csv does not say what the run gives"));
+    bench.write("b/2/disagreements.csv", table);
     bench.write("b/2/report.html", bench.read("b/1/report.html"));
     assert!(bench.failure(&["replay", "b", "--verify"]).contains("2/report.html differs"));
+}
+
+#[test]
+fn what_stands_above_the_folders_of_many_seeds_is_that_of_the_first() {
+    let bench = recorded(&["--seeds", "2"]);
+    let run = bench.read("a/run.toml");
+    bench.write("a/run.toml", run.replacen("steps = 800", "steps = 900", 1));
+    let told = bench.failure(&["replay", "a", "--verify"]);
+    assert!(told.starts_with("exit status 7") && told.contains("run.toml does not say what the run gives"), "{told}");
+    bench.write("a/run.toml", run);
+    bench.ok(&["replay", "a", "--verify"]);
+}
+
+#[test]
+fn a_log_that_names_other_rules_is_refused_though_its_digests_fit() {
+    let bench = recorded(&[]);
+    let path = bench.path().join("a/log.bin");
+    let log = std::fs::read(&path).unwrap();
+    let forged = |from: &str, to: &str| {
+        assert_eq!(from.len(), to.len());
+        let end = 16 + u32::from_le_bytes(log[12..16].try_into().unwrap()) as usize;
+        let header = String::from_utf8(log[16..end].to_vec()).unwrap();
+        let changed = header.replacen(from, to, 1);
+        assert_ne!(header, changed, "{from}");
+        let start = [&log[..16], changed.as_bytes()].concat();
+        std::fs::write(&path, [&start[..], engine::digest::Digest::of(&start).bytes(), &log[end + 32..]].concat())
+            .unwrap();
+        let told = bench.failure(&["replay", "a", "--verify"]);
+        assert!(told.starts_with("exit status 7") && told.contains("E-LOG-FILE"), "{told}");
+    };
+    forged("\"name\":\"too close\"", "\"name\":\"too loose\"");
+    forged("\"value\":-1.0", "\"value\":-2.0");
+    forged("\"behaviour\":\"short\"", "\"behaviour\":\"shirt\"");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The command line: names, defaults and help, no logic.
 
+mod changes;
 mod check;
 mod language;
 mod new;
@@ -12,6 +13,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+pub(crate) use changes::{Changes, SettingChanges};
 pub(crate) use check::{CheckArguments, CheckFormat};
 pub(crate) use language::{ReferenceArguments, UpgradeArguments};
 pub(crate) use new::{NewArguments, NewCommand, WorldArguments, WorldCommand};
@@ -117,12 +119,8 @@ pub(crate) struct RunArguments {
     /// How many steps to learn; without it, what the script says
     #[arg(long, value_parser = count, allow_hyphen_values = true, value_name = "N")]
     pub(crate) steps: Option<u64>,
-    /// Another world: its name, or the path of a world file
-    #[arg(long)]
-    pub(crate) world: Option<String>,
-    /// Change a setting of the script, such as camera.tilt_deg=40; may be given again
-    #[arg(long, value_name = "KEY=VALUE")]
-    pub(crate) set: Vec<String>,
+    #[command(flatten)]
+    pub(crate) changes: Changes,
     /// The folder for the results [default: runs/BEHAVIOUR/SEED]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
@@ -156,9 +154,8 @@ pub(crate) struct RunArguments {
 pub(crate) struct TestArguments {
     /// The folder of a run, such as runs/wall/1; or a .pack file or an installed pack's name, for the policy that it carries
     pub(crate) run: PathBuf,
-    /// Another world: its name, or the path of a world file; without it, the one that the run learned in
-    #[arg(long)]
-    pub(crate) world: Option<String>,
+    #[command(flatten)]
+    pub(crate) changes: Changes,
     /// Other worlds, equally likely, by name, path or rule, such as corridors:100-120; a comma stands between two
     #[arg(long, value_delimiter = ',', conflicts_with_all = ["world", "plain"], value_name = "WORLDS")]
     pub(crate) worlds: Vec<String>,
@@ -171,9 +168,6 @@ pub(crate) struct TestArguments {
     /// How many steps to test; without it, what the script says
     #[arg(long, value_parser = count, allow_hyphen_values = true, value_name = "N")]
     pub(crate) steps: Option<u64>,
-    /// Change a setting, such as light or noise: camera.noise=8; may be given again
-    #[arg(long, value_name = "KEY=VALUE")]
-    pub(crate) set: Vec<String>,
     /// A folder for the figures and pictures of the test; without it, nothing is written
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
@@ -195,9 +189,8 @@ pub(crate) struct BenchArguments {
     /// The behaviour whose step is measured
     #[arg(long, default_value = "scripts/wall.rhai")]
     pub(crate) behaviour: PathBuf,
-    /// Another world: its name, or the path of a world file
-    #[arg(long)]
-    pub(crate) world: Option<String>,
+    #[command(flatten)]
+    pub(crate) changes: Changes,
     /// Another size of the image, such as 320x240
     #[arg(long, value_parser = size, value_name = "WIDTHxHEIGHT")]
     pub(crate) size: Option<(u64, u64)>,
@@ -214,9 +207,6 @@ pub(crate) struct BenchArguments {
     /// With --growth: the folder for growth.svg and growth.png
     #[arg(long, requires = "growth", value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Change a setting of the script, such as camera.noise=0; may be given again
-    #[arg(long, value_name = "KEY=VALUE")]
-    pub(crate) set: Vec<String>,
     /// Only learn so many steps, for programs that count instructions
     #[arg(long, hide = true, value_parser = count, value_name = "N")]
     pub(crate) count_steps: Option<u64>,
@@ -283,9 +273,8 @@ pub(crate) struct FilterArguments {
     /// The share of images with new states above which the exit status is 1
     #[arg(long, default_value = "0.2", value_parser = share, allow_hyphen_values = true, value_name = "SHARE")]
     pub(crate) new_share: f64,
-    /// Change a setting of the script, such as filter.sobel.threshold=80; may be given again
-    #[arg(long, value_name = "KEY=VALUE")]
-    pub(crate) set: Vec<String>,
+    #[command(flatten)]
+    pub(crate) changes: SettingChanges,
     /// The folder for the pictures [default: runs/BEHAVIOUR/filter]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,

@@ -8,7 +8,7 @@ use super::pictures::PICTURES;
 use crate::report::{CurveRow, curve_csv, disagreements_csv, write_atomic};
 use crate::store::{LOG_FILE, POLICY_FILE, RUN_FILE, SUMMARY_FILE, log_to_bytes, policy_to_toml, run_to_toml};
 use engine::diagnostic::{Diagnostic, Result};
-use engine::experiment::{Learned, Plan, RunLog, WINDOW_STEPS};
+use engine::experiment::{Learned, Plan, RunLog, TestRun, WINDOW_STEPS};
 
 /// Makes a folder and those above it.
 ///
@@ -36,6 +36,9 @@ pub(super) fn write_run(folder: &Path, plan: &Plan, seed: u64) -> Result<()> {
 
 /// The file of the learning curve in a run's folder.
 pub const CURVE_FILE: &str = "curve.csv";
+
+/// The file of a combination in a run's folder: where its policies disagree.
+pub const DISAGREEMENTS_FILE: &str = "disagreements.csv";
 
 /// Removes pictures and a page that an older run drew in a folder: of many seeds only one has pictures, and not always the same.
 pub(super) fn remove_drawn(folder: &Path) -> Result<()> {
@@ -68,14 +71,20 @@ pub(super) fn write_policy(folder: &Path, plan: &Plan, learned: &Learned) -> Res
 /// Writes the figures of a seed, and its curve and policy or, if it combines policies, where they disagree.
 pub(super) fn write_seed(folder: &Path, plan: &Plan, result: &SeedResult) -> Result<()> {
     write_json(&folder.join(SUMMARY_FILE), &result.run.summary)?;
-    if let Some(combination) = &result.run.tested.combination {
-        let names: Vec<&str> = plan.members.iter().map(|member| member.name.as_str()).collect();
-        let table = disagreements_csv(&names, &plan.settings.actions, &combination.disagreements);
-        write_atomic(&folder.join("disagreements.csv"), table.as_bytes())?;
+    if let Some(table) = disagreements_of(plan, &result.run.tested) {
+        write_atomic(&folder.join(DISAGREEMENTS_FILE), table.as_bytes())?;
     }
     let Some(learned) = &result.run.learned else { return Ok(()) };
     write_atomic(&folder.join(CURVE_FILE), curve_of(plan, learned).as_bytes())?;
     write_policy(folder, plan, learned)
+}
+
+/// What `disagreements.csv` holds; nothing of a test in which no policies were combined.
+#[must_use]
+pub fn disagreements_of(plan: &Plan, tested: &TestRun) -> Option<String> {
+    let names: Vec<&str> = plan.members.iter().map(|member| member.name.as_str()).collect();
+    let combination = tested.combination.as_ref()?;
+    Some(disagreements_csv(&names, &plan.settings.actions, &combination.disagreements))
 }
 
 /// What `curve.csv` holds.

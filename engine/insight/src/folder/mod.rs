@@ -18,7 +18,7 @@ use files::{remove_drawn, write_log, write_policy, write_run, write_seed};
 use taken::{Claim, taken};
 
 pub use drawn::Redrawn;
-pub use files::{CURVE_FILE, create_folder, curve_of, write_json};
+pub use files::{CURVE_FILE, DISAGREEMENTS_FILE, create_folder, curve_of, disagreements_of, write_json};
 pub use test_folder::TestFolder;
 
 /// One seed's results.
@@ -145,11 +145,17 @@ impl RunFolder {
 
     /// Of many seeds, the one that fails most in its test is the one to look at.
     fn show_learned(&self, plan: &Plan, results: &[SeedResult], checked: Option<&Report>) -> Result<()> {
-        pictures::draw_curve(&self.path, plan, results)?;
         let failures = |result: &SeedResult| result.run.summary.test.failures_per_1000;
         let Some(worst) = results.iter().max_by(|a, b| failures(a).total_cmp(&failures(b))) else { return Ok(()) };
-        pictures::draw_seed(&self.of_seed(worst.run.summary.seed)?, plan, worst)?;
-        pages::write_page(&self.path, &self.logs, plan, results, checked)
+        let folder = self.of_seed(worst.run.summary.seed)?;
+        // The page plays the whole run again, which takes about as long as all pictures.
+        std::thread::scope(|scope| {
+            let page = scope.spawn(|| pages::write_page(&self.path, &self.logs, plan, results, checked));
+            let drawn = pictures::draw_curve(&self.path, plan, results)
+                .and_then(|()| pictures::draw_seed(&folder, plan, worst));
+            let written = page.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+            drawn.and(written)
+        })
     }
 
     /// Each seed has its own pictures and its own page.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::FilterSources;
+use super::{Changes, FilterSources};
 
 /// How findings are printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -32,12 +32,8 @@ impl CheckArguments {
 pub(crate) struct CheckArguments {
     /// The behaviour: a script such as scripts/wall.rhai, a .pack file, a pack's folder, or an installed pack's name
     pub(crate) behaviour: PathBuf,
-    /// Another world: its name, or the path of a world file
-    #[arg(long)]
-    pub(crate) world: Option<String>,
-    /// Change a setting of the script, such as camera.tilt_deg=40; may be given again
-    #[arg(long, value_name = "KEY=VALUE")]
-    pub(crate) set: Vec<String>,
+    #[command(flatten)]
+    pub(crate) changes: Changes,
     /// How to print what is found
     #[arg(long, value_enum, default_value = "text", value_name = "FORMAT")]
     pub(crate) format: CheckFormat,

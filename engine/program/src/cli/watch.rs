@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{FilterSources, count, seed};
+use super::{Changes, FilterSources, count, seed};
 
 #[derive(Debug, Args)]
 #[command(
@@ -41,12 +41,8 @@ pub(crate) struct WatchArguments {
     /// Write each finished run to this folder, as engine run does; with --keep it is runs/BEHAVIOUR/watch without this
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Another world: its name, or the path of a world file
-    #[arg(long)]
-    pub(crate) world: Option<String>,
-    /// Change a setting of the script, such as camera.tilt_deg=40; may be given again
-    #[arg(long, value_name = "KEY=VALUE")]
-    pub(crate) set: Vec<String>,
+    #[command(flatten)]
+    pub(crate) changes: Changes,
     /// The port of the page; the next free one if it is taken, any for 0
     #[arg(long, default_value = "8400", value_name = "N")]
     pub(crate) port: u16,

@@ -4,7 +4,7 @@ use std::io::IsTerminal;
 use std::sync::atomic::AtomicBool;
 
 use engine::diagnostic::Told;
-use engine::experiment::{Overrides, Plan};
+use engine::experiment::Plan;
 use insight::lint::{self, Exploits, Report, Severity};
 use insight::store::{policy_files, with_policies};
 use insight::words::short;
@@ -15,7 +15,7 @@ use crate::cli::{CheckArguments, CheckFormat};
 use crate::console::{Console, ConsoleError};
 
 pub(crate) fn run(arguments: &CheckArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
-    let overrides = Overrides { world: arguments.world.clone(), set: arguments.set.clone(), ..Overrides::default() };
+    let overrides = arguments.changes.overrides();
     let format = arguments.format();
     let checked = open_to_look(&arguments.behaviour, &overrides, &arguments.filters, false).and_then(|runnable| {
         // A pack's filters stand in a folder that lives as long as it does.

@@ -59,7 +59,7 @@ struct SeenImage {
 }
 
 pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
-    let overrides = Overrides { set: arguments.set.clone(), ..Overrides::default() };
+    let overrides = arguments.changes.overrides();
     // A pack's filters stand in a folder that lives as long as it does.
     let (plan, _unpacked) = sight(&arguments.behaviour, &overrides, &arguments.filters)?;
     if !plan.learns() {

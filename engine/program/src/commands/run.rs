@@ -22,8 +22,7 @@ use crate::cli::RunArguments;
 use crate::console::{Console, ConsoleError};
 
 pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
-    let (world, set) = (arguments.world.clone(), arguments.set.clone());
-    let overrides = Overrides { world, steps: arguments.steps, set, ..Overrides::default() };
+    let overrides = Overrides { steps: arguments.steps, ..arguments.changes.overrides() };
     let Runnable { plan, unpacked: _unpacked } =
         super::behaviour::open(&arguments.behaviour, &overrides, &arguments.filters, arguments.allow_unsigned)?;
     let seeds = seeds(arguments)?;

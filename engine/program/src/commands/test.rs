@@ -33,12 +33,10 @@ struct TestReport<'a> {
 
 pub(crate) fn run(arguments: &TestArguments, console: &mut Console) -> Result<u8, ConsoleError> {
     let overrides = Overrides {
-        world: arguments.world.clone(),
         worlds: arguments.worlds.clone(),
         plain: arguments.plain,
         test_steps: arguments.steps,
-        set: arguments.set.clone(),
-        ..Overrides::default()
+        ..arguments.changes.overrides()
     };
     let StoredRun { plan, seed, decider } = match super::behaviour::open_pack(&arguments.run, arguments.allow_unsigned)?
     {
@@ -50,7 +48,7 @@ pub(crate) fn run(arguments: &TestArguments, console: &mut Console) -> Result<u8
             StoredRun { plan, ..stored }
         }
     };
-    check_effect(&arguments.set, plan.settings.learner.kind)?;
+    check_effect(arguments.changes.set(), plan.settings.learner.kind)?;
     let folder = arguments.out.as_ref().map(|out| TestFolder::create(out, arguments.force)).transpose()?;
     let stop = on_ctrl_c()?;
     let test_seed = arguments.seed.unwrap_or(seed);

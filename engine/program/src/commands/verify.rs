@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::experiment::{Decider, Learned, Overrides, Plan, RunLog, SeedRun, Spread, Summary, run_only_seed};
 use engine::filter::Catalogue;
-use insight::folder::{CURVE_FILE, Redrawn, RunFolder, SeedResult, curve_of};
+use insight::folder::{CURVE_FILE, DISAGREEMENTS_FILE, Redrawn, RunFolder, SeedResult, curve_of, disagreements_of};
 use insight::lint::check_behaviour_until;
 use insight::store::{
     LOG_FILE, POLICY_FILE, RUN_FILE, RecordedRun, SUMMARY_FILE, policy_to_toml, read_stored, seed_folders,
@@ -50,6 +50,7 @@ pub(super) fn verify(
         console.json(&again.verified)?;
         return print(console, &again.verified, &drawn.unwrap_or_default()).map(|()| 0);
     }
+    check_first_run(folder, &seeds)?;
     let (mut summaries, mut verified, mut shown) = (Vec::new(), Vec::new(), Vec::new());
     for (seed, folder) in seeds {
         let Some(again) = verify_seed(&folder, filters, &stop)? else { return Ok(INTERRUPTED) };
@@ -70,6 +71,17 @@ pub(super) fn verify(
     console.line(&format!("reproduced bit for bit: {} seeds, and every figure above them", verified.len()))?;
     print_drawn(console, &drawn)?;
     Ok(0)
+}
+
+/// Above the folders of its seeds, a run has the `run.toml` of the first of them.
+fn check_first_run(folder: &Path, seeds: &[(u64, PathBuf)]) -> Result<()> {
+    let Some((seed, first)) = seeds.first() else { return Ok(()) };
+    let (above, below) = (read_stored(&folder.join(RUN_FILE))?, read_stored(&first.join(RUN_FILE))?);
+    if above.text == below.text {
+        return Ok(());
+    }
+    let line = first_line_that_differs(&above.text, &below.text);
+    forged(RUN_FILE, &format!("line {line} is not that of seed {seed}, the first one")).fail()
 }
 
 /// What one seed came to, its figures as they were written, and what its pictures show; nothing of a run that failed.
@@ -114,6 +126,9 @@ fn verify_seed(folder: &Path, filters: &Arc<Catalogue>, stop: &AtomicBool) -> Re
         compare_figures(folder, written, &run.summary)?;
     }
     compare_files(folder, &plan, learned)?;
+    if let Some(table) = run.as_ref().and_then(|run| disagreements_of(&plan, &run.tested)) {
+        compare_file(folder, DISAGREEMENTS_FILE, &table)?;
+    }
     let learned_hash = || learned.map_or_else(String::new, |learned| learned.state_hash.clone());
     let state_hash = run.as_ref().map_or_else(learned_hash, |run| run.summary.state_hash.clone());
     let verified = Verified {
@@ -241,22 +256,27 @@ fn first_difference(place: &str, old: &Value, new: &Value) -> Option<(String, Va
 /// The table with all its fields, and the curve.
 fn compare_files(folder: &Path, plan: &Plan, learned: Option<&Learned>) -> Result<()> {
     let (Some(learned), Ok(run)) = (learned, std::fs::read_to_string(folder.join(RUN_FILE))) else { return Ok(()) };
-    let table = policy_to_toml(plan, &learned.policy, Some(&run))?;
-    for (name, again) in [(POLICY_FILE, table), (CURVE_FILE, curve_of(plan, learned))] {
-        let Ok(written) = std::fs::read_to_string(folder.join(name)) else {
-            // A run that a failure ended has no curve.
-            if folder.join(SUMMARY_FILE).exists() {
-                return forged(name, "it is not there").fail();
-            }
-            continue;
-        };
-        let differs = written.lines().zip(again.lines()).position(|(old, new)| old != new);
-        let line = differs.unwrap_or_else(|| written.lines().count().min(again.lines().count())) + 1;
-        if written != again {
-            return forged(name, &format!("line {line} differs")).fail();
-        }
+    compare_file(folder, POLICY_FILE, &policy_to_toml(plan, &learned.policy, Some(&run))?)?;
+    // A run that a failure ended has no curve.
+    if !folder.join(CURVE_FILE).exists() && !folder.join(SUMMARY_FILE).exists() {
+        return Ok(());
     }
-    Ok(())
+    compare_file(folder, CURVE_FILE, &curve_of(plan, learned))
+}
+
+/// One text, as it comes out again.
+fn compare_file(folder: &Path, name: &str, again: &str) -> Result<()> {
+    match std::fs::read_to_string(folder.join(name)) {
+        Ok(written) if written == again => Ok(()),
+        Ok(written) => forged(name, &format!("line {} differs", first_line_that_differs(&written, again))).fail(),
+        Err(_) => forged(name, "it is not there").fail(),
+    }
+}
+
+/// Lines are counted from 1.
+fn first_line_that_differs(one: &str, other: &str) -> usize {
+    let differs = one.lines().zip(other.lines()).position(|(one, other)| one != other);
+    differs.unwrap_or_else(|| one.lines().count().min(other.lines().count())) + 1
 }
 
 #[cfg(test)]

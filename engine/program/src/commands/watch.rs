@@ -26,8 +26,7 @@ pub(crate) fn run(arguments: &WatchArguments, console: &mut Console) -> Result<u
     if arguments.tui {
         return Err(without_terminal());
     }
-    let (world, set) = (arguments.world.clone(), arguments.set.clone());
-    let overrides = Overrides { world, steps: arguments.steps, set, ..Overrides::default() };
+    let overrides = Overrides { steps: arguments.steps, ..arguments.changes.overrides() };
     // What is wrong from the start is said here; what is saved wrong later, on the page.
     let sources = arguments.filters.clone();
     engine::experiment::Plan::load(&arguments.behaviour, &overrides, || super::sources::catalogue(&sources))?;

@@ -19,6 +19,10 @@ pub fn read_log(bytes: &[u8], plan: &Plan, seed: u64, run: &str) -> Result<RunLo
             format!("the log belongs to another run: of '{}' with seed {}", printable(&header.behaviour), header.seed);
         return Diagnostic::new("E-LOG-RUN", message).help("keep log.bin and run.toml of one run together").fail();
     }
+    if header.behaviour != plan.behaviour.name() {
+        let (named, of) = (printable(&header.behaviour), plan.behaviour.name());
+        return damaged(format!("the log names the behaviour '{named}', and its run is of '{of}'")).fail();
+    }
     let stretches = stretches(&header, plan)?;
     check_length(&stretches, body)?;
     let (mut before, mut rest, mut legs) = ([0; DIGEST_BYTES], body, Vec::new());
@@ -46,9 +50,7 @@ struct RecordStretch {
 fn stretches(header: &Header, plan: &Plan) -> Result<Vec<RecordStretch>> {
     let stretch = |name, plan: &Plan, rules: &[RuleEntry], record_bytes: usize, phase: PhaseEntry| {
         let shape = RecordShape::of(plan);
-        let is_fixed = |value: &Option<f64>| value.is_some();
-        let written = rules.iter().map(|rule| is_fixed(&rule.value));
-        if record_bytes != shape.bytes() || !written.eq(shape.values().iter().map(is_fixed)) {
+        if record_bytes != shape.bytes() || rules != RuleEntry::all(plan) {
             return Err(Box::new(damaged("the log's records do not fit the rules of its run".to_owned())));
         }
         Ok(RecordStretch { name, phase, shape })

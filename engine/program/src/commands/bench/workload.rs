@@ -34,13 +34,8 @@ pub(super) fn plan(arguments: &BenchArguments) -> Result<Plan> {
         set.extend([format!("camera.width_px={width_px}"), format!("camera.height_px={height_px}")]);
     }
     set.extend(arguments.lens.iter().map(|lens| format!("camera.lens={lens}")));
-    set.extend_from_slice(&arguments.set);
-    let overrides = Overrides {
-        world: arguments.world.clone(),
-        steps: Some(arguments.steps.max(LEAST_STEPS)),
-        set,
-        ..Overrides::default()
-    };
+    set.extend_from_slice(arguments.changes.set());
+    let overrides = Overrides { steps: Some(arguments.steps.max(LEAST_STEPS)), set, ..arguments.changes.overrides() };
     let filters = || crate::commands::sources::catalogue(&arguments.filters);
     let plan = Plan::load(&arguments.behaviour, &overrides, filters)?;
     if !plan.learns() {
