@@ -120,6 +120,10 @@ pub(crate) struct RunArguments {
     /// Another world: its name, or the path of a world file
     #[arg(long)]
     pub(crate) world: Option<String>,
+    /// Go on from what a finished run had learned, in another world, under other rules or on another body with the same states
+    /// and actions; of a run of many seeds, each seed from its own
+    #[arg(long, value_name = "RUN")]
+    pub(crate) from: Option<PathBuf>,
     /// Change a setting of the script, such as camera.tilt_deg=40; may be given again
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,

@@ -14,6 +14,7 @@
 use super::drive::{advance, recover};
 use super::{Choice, Cycle, Ledger, Plan, Recorded, Step};
 use crate::diagnostic::{Diagnostic, Result};
+use crate::learner::Rejudged;
 use crate::robot::{Robot, SimulatedRobot};
 
 /// Added to the seed, so that the noise of the test is not the noise of learning again.
@@ -73,7 +74,18 @@ impl<'a> Playback<'a> {
     /// # Errors
     /// If the plan does not work.
     pub fn new(plan: &'a Plan, seed: u64, phase: Phase, ledger: &'a Ledger) -> Result<Self> {
-        Self::with_robots(plan, phase, ledger, move || phase.robot(plan, seed))
+        Self::watched(plan, seed, phase, ledger, &[])
+    }
+
+    /// The same, with the rules of other plans that judge along.
+    pub(super) fn watched(
+        plan: &'a Plan,
+        seed: u64,
+        phase: Phase,
+        ledger: &'a Ledger,
+        others: &[&Plan],
+    ) -> Result<Self> {
+        Self::watched_with(plan, phase, ledger, move || phase.robot(plan, seed), others)
     }
 }
 
@@ -88,10 +100,26 @@ impl<'a, R: Robot> Playback<'a, R> {
         ledger: &'a Ledger,
         robots: impl Fn() -> Result<R> + Send + 'a,
     ) -> Result<Self> {
+        Self::watched_with(plan, phase, ledger, robots, &[])
+    }
+
+    /// Stands before the first step, with the rules of other plans that judge along until it goes back.
+    pub(super) fn watched_with(
+        plan: &'a Plan,
+        phase: Phase,
+        ledger: &'a Ledger,
+        robots: impl Fn() -> Result<R> + Send + 'a,
+        others: &[&Plan],
+    ) -> Result<Self> {
         let first = if phase == Phase::Learning { plan.first_leg() } else { plan };
-        let (cycle, played) = (Cycle::new(first, robots()?)?, Ledger::new(first, 1));
+        let (cycle, played) = (Cycle::watched(first, robots()?, others)?, Ledger::new(first, 1));
         let robots = Box::new(robots);
         Ok(Self { plan, phase, ledger, robots, cycle, swapped: 0, played, done: 0, must_recover: false })
+    }
+
+    /// What the rules have said that were the first to judge along.
+    pub(super) fn dismiss_witness(&mut self) -> Vec<Rejudged> {
+        self.cycle.dismiss_witness()
     }
 
     /// Stands before the first step again.

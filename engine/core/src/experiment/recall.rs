@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::relay::UsedDrivers;
 use super::{Chooser, Learns, Ledger, Phase, Plan, Playback};
 use crate::diagnostic::Result;
-use crate::learner::{ChainLink, Learner, MemoryLearner, ShippedLearner, shipped_learner};
+use crate::learner::{Carry, ChainLink, Learner, MemoryLearner, ShippedLearner};
 use crate::settings::LearnerKind;
 use crate::state::StateMap;
 
@@ -88,14 +88,19 @@ impl ValueReasons {
 
 /// The plan's learner, led along the first so many recorded steps of learning.
 fn led(plan: &Plan, seed: u64, learning: &Ledger, steps: usize) -> Result<ShippedLearner> {
-    let mut playback = Playback::new(plan, seed, Phase::Learning, learning)?;
+    let rescored = plan.swaps().filter(|(_, carry, ..)| *carry == Carry::Rescore).map(|(_, _, leg, _)| leg);
+    let others: Vec<&Plan> = rescored.collect();
+    let mut playback = Playback::watched(plan, seed, Phase::Learning, learning, &others)?;
     let (first, mut swaps) = (plan.first_leg(), plan.swaps().peekable());
     let map = first.state_map()?;
-    let mut learner = shipped_learner(&first.settings.learner, first.task(&*map, seed)?);
+    let mut learner = first.first_learner(&*map, seed)?;
     let mut used = UsedDrivers::new(plan, seed);
     while playback.done() < steps {
         while let Some((_, carry, leg, _)) = swaps.next_if(|(from, ..)| *from <= playback.done() as u64) {
             learner.swap(&leg.settings.learner, leg.mirror(&*map)?, carry);
+            if carry == Carry::Rescore {
+                learner.rescore(&playback.dismiss_witness());
+            }
         }
         let Some(step) = playback.advance()? else { break };
         if step.driver.is_none() {
