@@ -35,7 +35,7 @@ impl Plan {
 /// # Errors
 /// If the steps cannot be played again, or the other rules fail on their facts.
 pub fn rejudge(plan: &Plan, seed: u64, ledger: &Ledger, rules: &Plan) -> Result<Vec<Rejudged>> {
-    let mut playback = Playback::watched(plan, seed, Phase::Learning, ledger, &[rules])?;
+    let mut playback = Playback::judged_by(plan, seed, Phase::Learning, ledger, Some(rules))?;
     while playback.advance()?.is_some() {}
     Ok(playback.dismiss_witness())
 }

@@ -113,8 +113,7 @@ pub(super) fn learn_through(
     report: &(dyn Fn(Progress) + Sync),
     ledger: &mut Ledger,
 ) -> Result<Learning> {
-    let rescored = plan.swaps().filter(|(_, carry, ..)| *carry == Carry::Rescore).map(|(_, _, leg, _)| leg);
-    let others: Vec<&Plan> = rescored.chain(after).collect();
+    let others: Vec<&Plan> = plan.rescored().chain(after).collect();
     let mut learning = Learning::watched(plan.first_leg(), seed, &others)?;
     learning.run(plan.first_steps(), stop, report, ledger)?;
     for (from, carry, leg, steps) in plan.swaps() {

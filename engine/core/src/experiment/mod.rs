@@ -68,7 +68,7 @@ pub use origin::Origin;
 pub use plan::{Overrides, Plan};
 pub use playback::{Phase, Playback};
 pub use reasons::{FactReasons, GuardReasons, PartReasons, RuleReasons, StateCells, StepReasons, UseReasons};
-pub use recall::{TryReasons, ValueLink, ValueReasons};
+pub use recall::{Recall, TryReasons, ValueLink, ValueReasons};
 pub use recorded_movers::RecordedMovers;
 pub use rescore::{Rescored, RuleChange, RuleScore, plan_with_rules_of, rescore};
 pub use run_log::{CHUNK_STEPS, DIGEST_BYTES, RunLog, chained};

@@ -55,6 +55,9 @@ pub struct Document {
     pub window_steps: u64,
     /// Steps of learning that are planned, in all legs.
     pub planned_steps: u64,
+    /// The run that learning went on from, and what was carried on, in words; of many seeds, that of the first.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from: Option<String>,
     /// Where the reward was swapped while the robot learned.
     pub swaps: Vec<Swap>,
     /// Forward speed, m/s, and turning speed, rad/s, of each action.
@@ -239,6 +242,11 @@ impl Document {
             period_s: run.period_s,
             window_steps: WINDOW_STEPS,
             planned_steps: plan.learning_steps(),
+            from: plan
+                .first_leg()
+                .origins
+                .first()
+                .map(|origin| format!("{}: {}", origin.name(), origin.carried(plan.first_leg()))),
             swaps: plan.swaps().map(|(step, table, ..)| Swap { step, table }).collect(),
             actions: plan.motions().iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
             grid: [rows, columns],
