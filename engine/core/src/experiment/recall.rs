@@ -127,12 +127,23 @@ impl Recall {
 }
 
 impl ValueReasons {
-    /// The same, of the steps behind it only the latest few.
+    /// The same for a reader: of the steps behind it only the latest few, all numbers with five digits.
     #[must_use]
-    pub fn with_tries(mut self, most: usize) -> Self {
-        self.tries.truncate(most);
+    pub fn brief(mut self, tries: usize) -> Self {
+        self.tries.truncate(tries);
+        let links = self.links.iter_mut();
+        let of_links =
+            links.flat_map(|link| [Some(&mut link.tries), link.mean.as_mut(), Some(&mut link.value)]).flatten();
+        let of_tries = self.tries.iter_mut().flat_map(|one| [&mut one.gain, &mut one.weight]);
+        for number in of_links.chain(of_tries).chain([&mut self.value, &mut self.unit]) {
+            *number = five_digits(*number);
+        }
         self
     }
+}
+
+fn five_digits(number: f64) -> f64 {
+    format!("{number:.4e}").parse().unwrap_or(number)
 }
 
 /// `columns 1 2`, `camera columns 1 2, laser.front`: some digits of a state.

@@ -87,7 +87,7 @@ impl ShotMaker<'_> {
     /// # Errors
     /// If a picture cannot be encoded.
     pub fn shot(&self, playback: &Playback<'_>, reasons: StepReasons) -> Result<Shot> {
-        let value = reasons.value.map(|value| value.with_tries(MOST_TRIES));
+        let value = reasons.value.map(|value| value.brief(MOST_TRIES));
         let reasons = StepReasons { value, ..reasons };
         let cycle = playback.cycle();
         let Snapshot { image, views, state } = Snapshot::of(cycle);
