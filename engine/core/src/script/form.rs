@@ -138,7 +138,13 @@ mod tests {
     #[test]
     fn a_function_has_the_form_of_its_words() {
         let reward = |body: &str| form(&format!("fn reward(facts) {{ {body} }}"));
-        assert_eq!(reward("if facts.contact { -1 } else { 0 }"), reward("if facts.contact { -2 } else { 0.5 }"));
-        assert_ne!(reward("if facts.contact { -1 } else { 0 }"), reward("if !facts.contact { -1 } else { 0 }"));
+        assert_eq!(
+            reward("if facts.robot.contact { -1.0 } else { 0.0 }"),
+            reward("if facts.robot.contact { -2.0 } else { 0.5 }")
+        );
+        assert_ne!(
+            reward("if facts.robot.contact { -1.0 } else { 0.0 }"),
+            reward("if !facts.robot.contact { -1.0 } else { 0.0 }")
+        );
     }
 }

@@ -242,11 +242,7 @@ impl Document {
             period_s: run.period_s,
             window_steps: WINDOW_STEPS,
             planned_steps: plan.learning_steps(),
-            from: plan
-                .first_leg()
-                .origins
-                .first()
-                .map(|origin| format!("{}: {}", origin.name(), origin.carried(plan.first_leg()))),
+            from: goes_on_from(plan),
             swaps: plan.swaps().map(|(step, table, ..)| Swap { step, table }).collect(),
             actions: plan.motions().iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
             grid: [rows, columns],
@@ -306,6 +302,12 @@ pub(crate) fn median_seed(failures: &[f64], at_hand: impl Fn(usize) -> bool) -> 
     let median = failures.iter().copied().collect::<Sorted>().upper_median()?;
     let away = |index: &usize| (failures[*index] - median).abs();
     (0..failures.len()).filter(|index| at_hand(*index)).min_by(|a, b| away(a).total_cmp(&away(b)))
+}
+
+/// The run that learning went on from, and what was carried on, in words.
+fn goes_on_from(plan: &Plan) -> Option<String> {
+    let first = plan.first_leg();
+    first.origins.first().map(|origin| format!("{}: {}", origin.name(), origin.carried(first)))
 }
 
 /// A seed takes about as much room as those before it.
