@@ -42,6 +42,8 @@ mod golden;
 mod hostile;
 /// Folders of runs and tests: nothing written over, tagged away or forged without a word.
 mod kept;
+/// Runs that go on from what others have learned, and one rule for what is carried on.
+mod learning_on;
 /// Every step kept, and brought back by its actions.
 mod ledger;
 /// Seeded mistakes and what is found in them; scripts that ship; ways to cheat.

@@ -121,6 +121,10 @@ pub(crate) struct RunArguments {
     pub(crate) steps: Option<u64>,
     #[command(flatten)]
     pub(crate) changes: Changes,
+    /// Go on from what a finished run had learned, in another world, under other rules or on another body with the same states
+    /// and actions; of a run of many seeds, each seed from its own
+    #[arg(long, value_name = "RUN")]
+    pub(crate) from: Option<PathBuf>,
     /// The folder for the results [default: runs/BEHAVIOUR/SEED]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,

@@ -13,6 +13,7 @@ use super::session::Session;
 use super::{combined, findings};
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Plan, WINDOW_STEPS, in_parallel};
+use engine::learner::Carry;
 use engine::script::ParamValues;
 use insight::store::{policy_files, with_policies};
 
@@ -165,7 +166,8 @@ impl Relearner {
                     session.swap(plan, carry)?;
                     return Ok(session);
                 }
-                Some(what) => note = format!("{what} changed, so from nothing; "),
+                Some(what) if carry == Carry::Reset => note = format!("{what} changed, so from nothing; "),
+                Some(what) => (plan, note) = gone_on(plan, &session, &what)?,
             }
         }
         let whole = self.desk.settings.keep.is_some() || self.desk.settings.finished.is_some();
@@ -292,4 +294,15 @@ fn follow(seen: &Receiver<()>, files: &Mutex<Files>, asker: &Asker, stop: &Atomi
         }
     }
     asker.end_running();
+}
+
+/// The plan, going on from what the seeds of a session have learned in another world or on another body, if it can; with words
+/// for the reader.
+fn gone_on(plan: Plan, session: &Session, what: &str) -> Result<(Plan, String)> {
+    let origins = session.origins(&plan)?;
+    let Some(carried) = origins.first().map(|origin| origin.carried(&plan)) else { return Ok((plan, String::new())) };
+    match plan.clone().going_on_from(origins) {
+        Ok(plan) => Ok((plan, format!("{what} changed: {carried}; "))),
+        Err(_) => Ok((plan, format!("{what} changed, so from nothing; "))),
+    }
 }

@@ -181,10 +181,10 @@ fn number(request: &HttpRequest, name: &str) -> std::result::Result<u64, Refusal
 
 fn shot(run: &SavedRun, seed: u64, phase: &str, step: usize) -> Option<Result<Shot>> {
     let watched = run.seeds.iter().find(|one| one.seed == seed)?;
-    let (phase, ledger) = match phase {
-        "learning" => (Phase::Learning, &*watched.learning),
-        "test" => (Phase::Test, &watched.tested),
+    let phase = match phase {
+        "learning" => Phase::Learning,
+        "test" => Phase::Test,
         _ => return None,
     };
-    shot_of(&run.plan, seed, phase, ledger, step).transpose()
+    shot_of(&run.plan, seed, [&watched.learning, &watched.tested], phase, step).transpose()
 }

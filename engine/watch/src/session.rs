@@ -5,9 +5,12 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::board::WatchedSeed;
-use engine::diagnostic::{Diagnostic, Result};
-use engine::experiment::{Learning, Ledger, Leg, MOST_STEPS, Plan, RecordShape, WINDOW_STEPS, in_parallel};
+use engine::diagnostic::{Diagnostic, Result, SourceText};
+use engine::experiment::{
+    Learned, Learning, Ledger, Leg, MOST_STEPS, Origin, Plan, RecordShape, WINDOW_STEPS, in_parallel, rejudge,
+};
 use engine::learner::Carry;
+use insight::store::run_to_toml;
 
 /// Room for the steps of all seeds, bytes; of longer runs the beginnings are kept.
 pub(super) const MOST_LEDGER_BYTES: u64 = 512 << 20;
@@ -108,11 +111,14 @@ impl Session {
         Ok(())
     }
 
-    /// Goes on under the rules of another plan for its steps, all seeds from where they are.
+    /// Goes on under the rules of another plan for its steps, all seeds from where they are. What is kept of what was learned,
+    /// the one rule says: [`Plan::carries_to`].
     ///
     /// # Errors
     /// If there is no room for more steps, or the new script fails on what a robot sees; then the session cannot go on.
     pub(super) fn swap(&mut self, plan: Plan, carry: Carry) -> Result<()> {
+        let carry = if carry == Carry::Keep { self.plan.carries_to(&plan) } else { carry };
+        let before = self.plan.clone();
         let mut legs = std::mem::take(&mut self.plan.earlier);
         let steps = self.done - legs.iter().map(|leg| leg.steps).sum::<u64>();
         legs.push(Leg { plan: self.plan.clone(), steps, then: carry });
@@ -121,7 +127,32 @@ impl Session {
         self.note = format!("reward swapped before step {}, table: {}; ", self.done, carry.name());
         self.check_room()?;
         let plan = &self.plan;
-        self.each(|pupil| pupil.learning.swap(plan, carry, Arc::make_mut(&mut pupil.ledger)))
+        self.each(|pupil| {
+            let Pupil { learning, ledger } = pupil;
+            let said = match carry {
+                Carry::Rescore => rejudge(&before, learning.seed(), ledger, plan)?,
+                _ => Vec::new(),
+            };
+            learning.swap_rejudged(plan, carry, &said, Arc::make_mut(ledger))
+        })
+    }
+
+    /// What the seeds have learned until now, for a plan in another world or on another body to go on from; nothing if
+    /// they have not begun.
+    ///
+    /// # Errors
+    /// What failed while a seed learned.
+    pub(super) fn origins(&self, next: &Plan) -> Result<Vec<Origin>> {
+        let mut plan = self.plan.clone();
+        plan.settings.run.steps = self.done - plan.earlier.iter().map(|leg| leg.steps).sum::<u64>();
+        let carry = plan.carries_to(next);
+        let seeds = if self.done == 0 { Vec::new() } else { self.seeds(true)? };
+        let learned = seeds.iter().filter_map(|seed| Some((seed.seed, seed.learned.as_ref()?)));
+        let origin = |(seed, learned): (u64, &Arc<Learned>)| {
+            let source = SourceText::new("", run_to_toml(&plan, seed)?);
+            Ok(Origin { plan: plan.clone(), seed, source, state_hash: learned.state_hash.clone(), carry })
+        };
+        learned.map(origin).collect()
     }
 
     /// The seeds as they are now, untested; `end` if the leg ends here.

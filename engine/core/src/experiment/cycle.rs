@@ -1,6 +1,7 @@
 //! One step of the robot, the order of which is the order of the folders: act, sense, filter, state, judge.
 
 mod shown;
+mod witness;
 
 use crate::allowed::Allowed;
 use crate::diagnostic::{Diagnostic, Result};
@@ -15,6 +16,7 @@ use super::co_driver::CoDrivers;
 use super::telling::{LaserTold, StepTold, tell};
 use super::{Eyes, Hand, Plan, Step};
 use filter_api::Format;
+use witness::Witness;
 
 /// In a script without goals, an attempt of so many steps went well.
 const LONG_STEPS: u64 = 400;
@@ -44,6 +46,8 @@ pub struct Cycle<R> {
     ended: Ended,
     /// After so many steps an attempt is broken off.
     stay_steps: u64,
+    /// Other rules that judge along.
+    witnesses: Vec<Witness>,
 }
 
 impl<R: Robot> Cycle<R> {
@@ -68,10 +72,14 @@ impl<R: Robot> Cycle<R> {
     ///
     /// # Errors
     /// As [`Cycle::new`].
-    pub fn with_eyes(plan: &Plan, robot: R, mut own: Eyes, mut others: Vec<Eyes>) -> Result<Self> {
+    pub fn with_eyes(plan: &Plan, robot: R, own: Eyes, others: Vec<Eyes>) -> Result<Self> {
+        Self::before(plan, robot, own, others, Vec::new())
+    }
+
+    /// As [`Cycle::with_eyes`], before those who judge along.
+    fn before(plan: &Plan, robot: R, own: Eyes, mut others: Vec<Eyes>, witnesses: Vec<Witness>) -> Result<Self> {
         let settings = &plan.settings;
         let judge = plan.judge()?;
-        own.look_for(judge.looks());
         others.insert(0, own);
         let co_drivers = CoDrivers::new(plan)?;
         let grey = others.iter().flat_map(|eyes| &eyes.chains).all(|chain| chain.likes() == Format::Grey);
@@ -96,12 +104,14 @@ impl<R: Robot> Cycle<R> {
             has_goals: plan.behaviour.has_goals(),
             ended: Ended::default(),
             stay_steps: plan.stay_steps(),
+            witnesses,
         };
         cycle.measure_reach();
-        cycle.observation.ground = cycle.reads_ground().then(Default::default);
+        cycle.look();
         cycle.perceive()?;
         cycle.calibrate()?;
         cycle.rest()?;
+        cycle.set_witnesses_out()?;
         Ok(cycle)
     }
 
@@ -135,8 +145,7 @@ impl<R: Robot> Cycle<R> {
     /// If the script fails.
     pub(super) fn swap_judge(&mut self, plan: &Plan) -> Result<()> {
         self.judge = plan.judge()?;
-        self.eyes[0].look_for(self.judge.looks());
-        self.observation.ground = self.reads_ground().then(Default::default);
+        self.look();
         self.has_goals = plan.behaviour.has_goals();
         (self.potential, self.leave) = (0.0, Leave::default());
         self.judge.go_to(self.robot.world_index());
@@ -153,7 +162,8 @@ impl<R: Robot> Cycle<R> {
     }
 
     fn reads_ground(&self) -> bool {
-        self.judge.reads_ground() || self.co_drivers.read_ground()
+        let witnesses = self.witnesses.iter().any(Witness::reads_ground);
+        self.judge.reads_ground() || self.co_drivers.read_ground() || witnesses
     }
 
     /// The learned policy that is to choose now, if a use holds.
@@ -243,6 +253,7 @@ impl<R: Robot> Cycle<R> {
         self.since_recovery += 1;
         self.perceive()?;
         self.fill_facts(action, index + 1);
+        self.tell_witnesses(action, index + 1);
         let stage = self.judge.stage();
         let verdict = self.judge.judge().map_err(|error| at_step(error, index))?;
         let guarded = !self.leave.allowed.is_all();
@@ -260,7 +271,7 @@ impl<R: Robot> Cycle<R> {
         self.steps += 1;
         self.potential = self.judge.potential();
         self.ended = self.ended(&verdict, hop);
-        Ok(Step {
+        let step = Step {
             index,
             state,
             action,
@@ -278,7 +289,9 @@ impl<R: Robot> Cycle<R> {
             guarded,
             next_allowed: self.leave.allowed,
             hop,
-        })
+        };
+        self.ask_witnesses(&step).map_err(|error| at_step(error, index))?;
+        Ok(step)
     }
 
     /// What the robot is told of an attempt that ends here.
@@ -316,7 +329,8 @@ impl<R: Robot> Cycle<R> {
             // Whoever judges a record anew is calibrated by what is seen on arrival.
             self.fill_facts(0, self.steps);
         }
-        self.rest()
+        self.rest()?;
+        self.set_witnesses_out()
     }
 
     /// Sense, filter, state.
@@ -330,9 +344,13 @@ impl<R: Robot> Cycle<R> {
     }
 
     fn fill_facts(&mut self, action: usize, step: u64) {
-        let twist = self.actions.get(action).copied().unwrap_or_default();
-        let told = StepTold { action, twist, step, since_recovery: self.since_recovery, state: self.states[0] };
+        let told = self.told(action, step);
         tell(&mut self.judge, &mut self.eyes[0], &self.observation, self.laser, told);
+    }
+
+    fn told(&self, action: usize, step: u64) -> StepTold {
+        let twist = self.actions.get(action).copied().unwrap_or_default();
+        StepTold { action, twist, step, since_recovery: self.since_recovery, state: self.states[0] }
     }
 }
 

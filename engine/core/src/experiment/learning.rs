@@ -10,7 +10,7 @@ use super::relay::UsedDrivers;
 use super::trail::{Recorder, Trail};
 use super::{Cycle, Ledger, Observer, Phase, Plan, Step, Tally, WINDOW_STEPS, drive};
 use crate::diagnostic::{Diagnostic, Result};
-use crate::learner::{Carry, Learner, Policy, ShippedLearner, shipped_learner};
+use crate::learner::{Carry, Learner, Policy, Rejudged, ShippedLearner};
 use crate::robot::{Robot, SimulatedRobot};
 
 /// How far a seed has come, said at the end of every window.
@@ -96,20 +96,35 @@ pub fn learn_into(
     report: &(dyn Fn(Progress) + Sync),
     ledger: &mut Ledger,
 ) -> std::result::Result<Learned, Box<BrokenOff>> {
-    let mut learning = Learning::new(plan.first_leg(), seed)?;
-    learning.run(plan.first_steps(), stop, report, ledger)?;
-    for (from, carry, leg, steps) in plan.swaps() {
-        if learning.steps() < from {
-            break;
-        }
-        learning.swap(leg, carry, ledger)?;
-        learning.run(steps, stop, report, ledger)?;
-    }
+    let mut learning = learn_through(plan, seed, None, stop, report, ledger)?;
     let learned = learning.finish();
     match learning.fault {
         Some(error) => Err(Box::new(BrokenOff { error, learned: Some(learned) })),
         None => Ok(learned),
     }
+}
+
+/// Learns through all legs; the rules of another plan may judge along, for what comes after the last one.
+pub(super) fn learn_through(
+    plan: &Plan,
+    seed: u64,
+    after: Option<&Plan>,
+    stop: &AtomicBool,
+    report: &(dyn Fn(Progress) + Sync),
+    ledger: &mut Ledger,
+) -> Result<Learning> {
+    let others: Vec<&Plan> = plan.rescored().chain(after).collect();
+    let mut learning = Learning::watched(plan.first_leg(), seed, &others)?;
+    learning.run(plan.first_steps(), stop, report, ledger)?;
+    for (from, carry, leg, steps) in plan.swaps() {
+        if learning.steps() < from {
+            break;
+        }
+        let said = if carry == Carry::Rescore { learning.cycle.dismiss_witness() } else { Vec::new() };
+        learning.swap_rejudged(leg, carry, &said, ledger)?;
+        learning.run(steps, stop, report, ledger)?;
+    }
+    Ok(learning)
 }
 
 /// A robot that learns: for some steps, then for more, under the same reward or another.
@@ -129,14 +144,26 @@ pub struct Learning<R = SimulatedRobot, L = ShippedLearner> {
 }
 
 impl Learning {
-    /// A simulated robot at its start that knows nothing; earlier legs of the plan are not looked at.
+    /// A simulated robot at its start that knows nothing, or what the run had learned that the plan goes on from; earlier
+    /// legs of the plan are not looked at.
     ///
     /// # Errors
     /// If the plan does not work.
     pub fn new(plan: &Plan, seed: u64) -> Result<Self> {
-        let cycle = Cycle::new(plan, Phase::Learning.robot(plan, seed)?)?;
-        let learner = shipped_learner(&plan.settings.learner, plan.task(cycle.state_map(), seed)?);
+        Self::watched(plan, seed, &[])
+    }
+
+    /// The same, with the rules of other plans that judge along.
+    fn watched(plan: &Plan, seed: u64, others: &[&Plan]) -> Result<Self> {
+        let cycle = Cycle::watched(plan, Phase::Learning.robot(plan, seed)?, others)?;
+        let learner = plan.first_learner(cycle.state_map(), seed)?;
         Ok(Self::with(plan, seed, cycle, learner))
+    }
+
+    /// What learned, and what the rules say that judged along to the end.
+    pub(super) fn into_learner(mut self) -> (ShippedLearner, Vec<Rejudged>) {
+        let said = self.cycle.dismiss_witness();
+        (self.learner, said)
     }
 }
 
@@ -156,6 +183,12 @@ impl<R: Robot, L: Learner> Learning<R, L> {
             cycle,
             fault: None,
         }
+    }
+
+    /// Whose learning it is.
+    #[must_use]
+    pub fn seed(&self) -> u64 {
+        self.seed
     }
 
     /// Steps done, in all legs.
@@ -219,11 +252,22 @@ impl<R: Robot, L: Learner> Learning<R, L> {
     /// # Errors
     /// If the new script fails on what the robot sees.
     pub fn swap(&mut self, plan: &Plan, carry: Carry, ledger: &mut Ledger) -> Result<()> {
+        self.swap_rejudged(plan, carry, &[], ledger)
+    }
+
+    /// The same; of [`Carry::Rescore`], with what the new rules say of the latest steps, see [`super::rejudge`].
+    ///
+    /// # Errors
+    /// As [`Learning::swap`].
+    pub fn swap_rejudged(&mut self, plan: &Plan, carry: Carry, said: &[Rejudged], ledger: &mut Ledger) -> Result<()> {
         if self.fault.is_some() {
             return Ok(());
         }
         let settings = &plan.settings;
         self.learner.swap(&settings.learner, plan.mirror(self.cycle.state_map())?, carry);
+        if carry == Carry::Rescore {
+            self.learner.rescore(said);
+        }
         self.cycle.swap_judge(plan)?;
         let rules = with_gone(plan.own_rule_names().collect(), self.rules.iter().cloned());
         self.tally.swap_rules(&self.rules, &rules, settings.run.steps);

@@ -43,6 +43,11 @@ impl Plan {
         })
     }
 
+    /// The plans of the legs by whose rules the steps before them are judged anew, in their order.
+    pub(super) fn rescored(&self) -> impl Iterator<Item = &Self> {
+        self.swaps().filter(|(_, carry, ..)| *carry == Carry::Rescore).map(|(_, _, leg, _)| leg)
+    }
+
     /// Steps of the first leg.
     #[must_use]
     pub fn first_steps(&self) -> u64 {

@@ -3,6 +3,7 @@
 //! Nothing here prints, reads a clock or writes a file.
 
 mod base_lines;
+mod carrying;
 mod certainty;
 mod changes;
 mod choosers;
@@ -19,6 +20,7 @@ mod ledger;
 mod legs;
 mod measured;
 
+mod origin;
 mod outlook;
 mod parts;
 mod plan;
@@ -48,6 +50,7 @@ mod use_figures;
 mod used;
 
 pub use base_lines::{base_lines, test_untrained};
+pub use carrying::rejudge;
 pub use certainty::CertaintyGrid;
 pub use choosers::{ByState, Frozen, Learns};
 use choosers::{Recorded, Together};
@@ -61,10 +64,11 @@ pub use learning::{BrokenOff, Learned, Learning, Progress, learn, learn_into};
 pub use ledger::{Attempt, Ledger, LedgerLeg, MOST_STEPS, Record, RecordShape};
 pub use legs::Leg;
 
+pub use origin::Origin;
 pub use plan::{Overrides, Plan};
 pub use playback::{Phase, Playback};
 pub use reasons::{FactReasons, GuardReasons, PartReasons, RuleReasons, StateCells, StepReasons, UseReasons};
-pub use recall::{TryReasons, ValueLink, ValueReasons};
+pub use recall::{Recall, TryReasons, ValueLink, ValueReasons};
 pub use recorded_movers::RecordedMovers;
 pub use rescore::{Rescored, RuleChange, RuleScore, plan_with_rules_of, rescore};
 pub use run_log::{CHUNK_STEPS, DIGEST_BYTES, RunLog, chained};
@@ -73,7 +77,7 @@ pub use seeds::in_parallel;
 pub use sight::Sight;
 pub use snapshot::{SeenView, Snapshot};
 pub use step::Step;
-pub use summary::{ConditionSpread, FigureSpread, Spread, StartJoined, Summary};
+pub use summary::{ConditionSpread, FigureSpread, FromRun, Spread, StartJoined, Summary};
 pub use tally::Tally;
 pub use testing::{CombinationTest, Decider, TestRun, frozen, test, test_and_watch, test_choices, test_robot};
 pub use trail::Trail;

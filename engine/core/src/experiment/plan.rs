@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::changes::{changed, with_params};
 use super::parts::Parts;
 use super::plan_worlds::load_worlds;
-use super::{Eyes, Leg, Member, UsedPolicy, outlook};
+use super::{Eyes, Leg, Member, Origin, UsedPolicy, outlook};
 use crate::diagnostic::{Diagnostic, Mistakes, Result};
 use crate::filter::{Catalogue, Chain};
 use crate::judge::Judge;
@@ -54,6 +54,8 @@ pub struct Plan {
     pub filters: Arc<Catalogue>,
     /// What is learned under other rewards first; none unless the reward was swapped while the robot learned.
     pub earlier: Vec<Leg>,
+    /// The runs that learning goes on from: one for all seeds, or one for each; none if it begins with nothing.
+    pub origins: Vec<Arc<Origin>>,
 }
 
 impl Plan {
@@ -134,6 +136,7 @@ impl Plan {
             self.worlds
         };
         let plan = Self::with_worlds(behaviour, settings, worlds, self.filters)?;
+        let plan = Self { origins: self.origins, ..plan };
         Ok(plan.with_members(self.members).with_used(self.used).after(self.earlier))
     }
 
@@ -180,8 +183,8 @@ impl Plan {
             return mistakes.end().and(Err(Box::new(unknown)));
         };
         let layout = Arc::clone(worlds.home());
-        let (members, used, earlier) = (Vec::new(), Vec::new(), Vec::new());
-        let plan = Self { behaviour, settings, layout, worlds, members, used, filters, earlier };
+        let (members, used, earlier, origins) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let plan = Self { behaviour, settings, layout, worlds, members, used, filters, earlier, origins };
         plan.find_out_of_reach(unread, &mut mistakes);
         plan.find_unnamed(&mut mistakes);
         plan.find_unvaried(&mut mistakes);
@@ -290,13 +293,18 @@ impl Plan {
         Self { members, ..self }
     }
 
+    /// The names of the starts of each world.
+    pub(super) fn names_of_starts(&self) -> impl Iterator<Item = Vec<String>> {
+        let starts = |layout: &Arc<Layout>| layout.starts.iter().map(|start| start.name.clone()).collect();
+        self.worlds.layouts().iter().map(starts)
+    }
+
     /// A fresh judge.
     ///
     /// # Errors
     /// If a rule does not fit the settings, such as a beam that the laser does not have.
     pub fn judge(&self) -> Result<Judge> {
-        let starts = |layout: &Arc<Layout>| layout.starts.iter().map(|start| start.name.clone()).collect();
-        let judge = self.parts().judge()?.in_worlds(self.worlds.layouts().iter().map(starts));
+        let judge = self.parts().judge()?.in_worlds(self.names_of_starts());
         if self.used.is_empty() {
             return Ok(judge);
         }

@@ -12,8 +12,9 @@
 //! A step takes as long as one of learning, about 8 microseconds; going back plays from the beginning.
 
 use super::drive::{advance, recover};
-use super::{Choice, Cycle, Ledger, Plan, Recorded, Step};
+use super::{Choice, Cycle, Ledger, Plan, Recall, Recorded, Step, ValueReasons};
 use crate::diagnostic::{Diagnostic, Result};
+use crate::learner::{Carry, Rejudged};
 use crate::robot::{Robot, SimulatedRobot};
 
 /// Added to the seed, so that the noise of the test is not the noise of learning again.
@@ -65,6 +66,9 @@ pub struct Playback<'a, R = SimulatedRobot> {
     played: Ledger,
     done: usize,
     must_recover: bool,
+    seed: u64,
+    /// What learned, led along.
+    recall: Option<Recall>,
 }
 
 impl<'a> Playback<'a> {
@@ -73,7 +77,53 @@ impl<'a> Playback<'a> {
     /// # Errors
     /// If the plan does not work.
     pub fn new(plan: &'a Plan, seed: u64, phase: Phase, ledger: &'a Ledger) -> Result<Self> {
-        Self::with_robots(plan, phase, ledger, move || phase.robot(plan, seed))
+        Self::judged_by(plan, seed, phase, ledger, None)
+    }
+
+    /// The same, with the rules of another plan that judge along until it goes back.
+    pub(super) fn judged_by(
+        plan: &'a Plan,
+        seed: u64,
+        phase: Phase,
+        ledger: &'a Ledger,
+        rules: Option<&Plan>,
+    ) -> Result<Self> {
+        let made = Self::made(plan, phase, ledger, move || phase.robot(plan, seed), rules)?;
+        Ok(Self { seed, ..made })
+    }
+
+    /// Of learning: with what learned led along, if it remembers its steps. Then [`Playback::value_of`] tells why an action has
+    /// its value.
+    ///
+    /// # Errors
+    /// If the plan does not work, or the run that it goes on from does not come out as it was recorded.
+    pub fn recalling(mut self) -> Result<Self> {
+        if self.phase == Phase::Learning {
+            self.recall = Recall::new(self.plan, self.seed)?;
+        }
+        Ok(self)
+    }
+
+    /// Of learning that is recalled: what learned, as it was at its end; nothing if not every step was recorded.
+    ///
+    /// # Errors
+    /// If a step cannot be played again.
+    pub fn into_recall(mut self) -> Result<Option<Recall>> {
+        if self.recall.is_none() || self.ledger.len() as u64 != self.ledger.steps() {
+            return Ok(None);
+        }
+        while self.advance()?.is_some() {}
+        if let Some(recall) = &mut self.recall {
+            recall.finish();
+        }
+        Ok(self.recall)
+    }
+
+    /// Of a test: with what had learned before it.
+    #[must_use]
+    pub fn with_recall(mut self, recall: Option<Recall>) -> Self {
+        self.recall = recall.filter(|_| self.phase == Phase::Test).or(self.recall);
+        self
     }
 }
 
@@ -88,16 +138,35 @@ impl<'a, R: Robot> Playback<'a, R> {
         ledger: &'a Ledger,
         robots: impl Fn() -> Result<R> + Send + 'a,
     ) -> Result<Self> {
-        let first = if phase == Phase::Learning { plan.first_leg() } else { plan };
-        let (cycle, played) = (Cycle::new(first, robots()?)?, Ledger::new(first, 1));
-        let robots = Box::new(robots);
-        Ok(Self { plan, phase, ledger, robots, cycle, swapped: 0, played, done: 0, must_recover: false })
+        Self::made(plan, phase, ledger, robots, None)
+    }
+
+    fn made(
+        plan: &'a Plan,
+        phase: Phase,
+        ledger: &'a Ledger,
+        robots: impl Fn() -> Result<R> + Send + 'a,
+        rules: Option<&Plan>,
+    ) -> Result<Self> {
+        let (first, others) = before(plan, phase, rules);
+        let (cycle, played) = (Cycle::watched(first, robots()?, &others)?, Ledger::new(first, 1));
+        let (robots, recall) = (Box::new(robots), None);
+        let (swapped, done, must_recover, seed) = (0, 0, false, 0);
+        Ok(Self { plan, phase, ledger, robots, cycle, swapped, played, done, must_recover, seed, recall })
+    }
+
+    /// What the rules have said that were the first to judge along.
+    pub(super) fn dismiss_witness(&mut self) -> Vec<Rejudged> {
+        self.cycle.dismiss_witness()
     }
 
     /// Stands before the first step again.
     fn rewind(&mut self) -> Result<()> {
-        let first = if self.phase == Phase::Learning { self.plan.first_leg() } else { self.plan };
-        self.cycle = Cycle::new(first, (self.robots)()?)?;
+        let (first, others) = before(self.plan, self.phase, None);
+        self.cycle = Cycle::watched(first, (self.robots)()?, &others)?;
+        if self.phase == Phase::Learning && self.recall.is_some() {
+            self.recall = Recall::new(self.plan, self.seed)?;
+        }
         self.played = Ledger::new(first, 1);
         (self.swapped, self.done, self.must_recover) = (0, 0, false);
         Ok(())
@@ -166,7 +235,16 @@ impl<'a, R: Robot> Playback<'a, R> {
         let (step, _) = advance(&mut self.cycle, &mut recorded, &mut self.played)?;
         self.done += 1;
         self.must_recover = step.moves();
+        if let Some(recall) = self.recall.as_mut().filter(|_| self.phase == Phase::Learning) {
+            recall.follow(&step);
+        }
         Ok(Some(step))
+    }
+
+    /// Why an action has its value in a state, as of now; nothing if nobody is led along who could tell.
+    #[must_use]
+    pub fn value_of(&self, choice: [usize; 2]) -> Option<ValueReasons> {
+        self.recall.as_ref().and_then(|recall| recall.of(choice))
     }
 
     /// The first field in which the last step differs from its record.
@@ -185,11 +263,23 @@ impl<'a, R: Robot> Playback<'a, R> {
         if self.phase == Phase::Test || self.swapped == plan.earlier.len() {
             return Ok(());
         }
-        for (_, _, leg, _) in plan.swaps().skip(self.swapped).take_while(|(from, ..)| *from <= self.done as u64) {
+        for (_, carry, leg, _) in plan.swaps().skip(self.swapped).take_while(|(from, ..)| *from <= self.done as u64) {
+            let said = if carry == Carry::Rescore { self.cycle.dismiss_witness() } else { Vec::new() };
+            if let Some(recall) = &mut self.recall {
+                recall.swap(leg, carry, &said)?;
+            }
             self.cycle.swap_judge(leg)?;
             self.played = Ledger::new(leg, 1);
             self.swapped += 1;
         }
         Ok(())
     }
+}
+
+/// The plan of the first step, and whose rules judge along from there: those by which steps will be judged anew.
+fn before<'a>(plan: &'a Plan, phase: Phase, rules: Option<&'a Plan>) -> (&'a Plan, Vec<&'a Plan>) {
+    if phase == Phase::Test {
+        return (plan, rules.into_iter().collect());
+    }
+    (plan.first_leg(), plan.rescored().chain(rules).collect())
 }

@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use super::{Cycle, Plan, Playback};
+use super::{Cycle, Plan, Playback, ValueReasons};
 use crate::diagnostic::Result;
 use crate::judge::{FactRead, Judge, Leave, PartRead, RuleText};
-use crate::outcome::Ending;
+use crate::outcome::{Ending, Then};
 use crate::robot::Robot;
 
 /// One step with its reasons.
@@ -29,6 +29,9 @@ pub struct StepReasons {
     pub reward: f64,
     /// Whether the step ended the attempt.
     pub recover: bool,
+    /// What the script said then: `recover`, `fail`, `goal` or `restart`; absent if the attempt went on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub then: Option<&'static str>,
     /// How: `failure`, `goal` or `restart`; null if it did not.
     pub ending: Option<&'static str>,
     /// Where the script said that the next attempt begins, by name; null if it did not say.
@@ -59,6 +62,9 @@ pub struct StepReasons {
     /// The use under which a learned policy chose the action; absent where the script's own choice was it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub used: Option<UseReasons>,
+    /// Why the action had its value when it was chosen, if a learner that remembers its steps was led along.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub value: Option<ValueReasons>,
 }
 
 /// Why a learned policy drove.
@@ -158,6 +164,9 @@ impl StepReasons {
         playback.seek(index)?;
         let guards = GuardReasons::all(playback.plan(), playback.cycle().judge(), playback.cycle().leave());
         let used = UseReasons::of(playback.plan(), playback.cycle());
+        // A policy that is used chooses by values of its own.
+        let own = ledger.record(index).filter(|_| used.is_none());
+        let value = own.and_then(|record| playback.value_of([record.state as usize, usize::from(record.action)]));
         let (Some(step), Some(record)) = (playback.advance()?, ledger.record(index)) else { return Ok(None) };
         let plan = playback.plan();
         let (cycle, twist) = (playback.cycle(), plan.motions()[step.action]);
@@ -188,6 +197,7 @@ impl StepReasons {
             explored: record.explored,
             reward: step.reward,
             recover: step.then.is_some(),
+            then: step.then.map(Then::word),
             ending: step.ending().map(Ending::word),
             to: step.to.map(|to| layout.name_of(to).to_owned()),
             contact: step.contact,
@@ -200,6 +210,7 @@ impl StepReasons {
             rules: rules.collect(),
             guards,
             used: used.filter(|_| step.driver.is_some()),
+            value,
         }))
     }
 }

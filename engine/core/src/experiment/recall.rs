@@ -3,9 +3,9 @@
 use serde::Serialize;
 
 use super::relay::UsedDrivers;
-use super::{Chooser, Learns, Ledger, Phase, Plan, Playback};
+use super::{Chooser, Learns, Plan, Step};
 use crate::diagnostic::Result;
-use crate::learner::{ChainLink, Learner, MemoryLearner, ShippedLearner, shipped_learner};
+use crate::learner::{Carry, ChainLink, Learner, Rejudged, ShippedLearner};
 use crate::settings::LearnerKind;
 use crate::state::StateMap;
 
@@ -18,7 +18,9 @@ pub struct ValueReasons {
     pub unit: f64,
     /// What speaks, from what stands behind all else to the action's own tries.
     pub links: Vec<ValueLink>,
-    /// The remembered steps of this action in this state, the latest first.
+    /// How many remembered steps of this action in this state there are.
+    pub own_tries: usize,
+    /// These steps, the latest first; of very many, the latest.
     pub tries: Vec<TryReasons>,
 }
 
@@ -40,73 +42,108 @@ pub struct ValueLink {
 pub struct TryReasons {
     /// Its number among the steps of learning, from 0.
     pub step: u64,
+    /// It was a step of the run that this one goes on from; of several, counted from the first one's first.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub earlier: bool,
     /// The return that followed it: its reward and what came later, discounted.
     pub gain: f64,
     /// How much it counts, by the latest step.
     pub weight: f64,
 }
 
-impl ValueReasons {
-    /// Of an action in a state as it was before a step of learning; of a test, as it was at the end of learning. Nothing if
-    /// the learner remembers no steps, or not all of them were recorded.
+/// A learner that is led along recorded steps, to be asked why it values an action as it does.
+pub struct Recall {
+    learner: ShippedLearner,
+    used: UsedDrivers,
+    map: Box<dyn StateMap>,
+    /// Steps that were learned in the runs that this one goes on from.
+    before: u64,
+}
+
+impl Recall {
+    /// The plan's learner before its first step; nothing if it remembers no steps.
     ///
     /// # Errors
-    /// If the learning steps cannot be played again.
-    pub fn of(
-        plan: &Plan,
-        seed: u64,
-        learning: &Ledger,
-        step: Option<usize>,
-        choice: [usize; 2],
-    ) -> Result<Option<Self>> {
-        let whole = learning.len() as u64 == learning.steps();
-        let steps = step.unwrap_or(learning.len());
-        if plan.settings.learner.kind != LearnerKind::Memory || (step.is_none() && !whole) {
+    /// If the plan does not work, or the run that it goes on from does not come out as it was recorded.
+    pub(super) fn new(plan: &Plan, seed: u64) -> Result<Option<Self>> {
+        let first = plan.first_leg();
+        if plan.settings.learner.kind != LearnerKind::Memory {
             return Ok(None);
         }
-        let learner = led(plan, seed, learning, steps)?;
-        let map = plan.state_map()?;
-        Ok(learner.memory().map(|memory| Self::from(memory, &*map, choice)))
+        let map = first.state_map()?;
+        let learner = first.first_learner(&*map, seed)?;
+        Ok(Some(Self { learner, used: UsedDrivers::new(plan, seed), map, before: plan.steps_before(seed) }))
     }
 
-    fn from(memory: &MemoryLearner, map: &dyn StateMap, [state, action]: [usize; 2]) -> Self {
+    /// Learns from a recorded step.
+    pub(super) fn follow(&mut self, step: &Step) {
+        if step.driver.is_none() {
+            self.learner.visit(step.state);
+        }
+        self.used.with(Learns(&mut self.learner)).learn(step);
+        if step.moves() {
+            self.learner.forget();
+        }
+    }
+
+    /// Goes on under the rules of another leg.
+    pub(super) fn swap(&mut self, leg: &Plan, carry: Carry, said: &[Rejudged]) -> Result<()> {
+        self.learner.swap(&leg.settings.learner, leg.mirror(&*self.map)?, carry);
+        if carry == Carry::Rescore {
+            self.learner.rescore(said);
+        }
+        Ok(())
+    }
+
+    /// Learning has ended.
+    pub(super) fn finish(&mut self) {
+        self.used.settle(&mut Learns(&mut self.learner));
+        self.learner.forget();
+    }
+
+    /// How the value of an action in a state comes about now.
+    #[must_use]
+    pub fn of(&self, [state, action]: [usize; 2]) -> Option<ValueReasons> {
+        let memory = self.learner.memory()?;
         let chain = memory.chain(state, action);
         let links = chain.links.into_iter().map(|(link, tries, mean, value)| {
             let name = match link {
                 ChainLink::FirstValue => "first value".to_owned(),
-                ChainLink::Digits(digits) => digits_in_words(map, &digits),
+                ChainLink::Digits(digits) => digits_in_words(&*self.map, &digits),
                 ChainLink::SimilarActions => "similar actions".to_owned(),
                 ChainLink::OwnTries => "own tries".to_owned(),
             };
             ValueLink { name, tries, mean, value }
         });
-        let tries =
-            chain.tries.into_iter().map(|past| TryReasons { step: past.step, gain: past.gain, weight: past.weight });
-        Self { value: chain.value, unit: memory.unit(), links: links.collect(), tries: tries.collect() }
+        let tries = chain.tries.iter().map(|past| TryReasons {
+            step: past.step.checked_sub(self.before).unwrap_or(past.step),
+            earlier: past.step < self.before,
+            gain: past.gain,
+            weight: past.weight,
+        });
+        let (links, tries): (_, Vec<TryReasons>) = (links.collect(), tries.collect());
+        Some(ValueReasons { value: chain.value, unit: memory.unit(), links, own_tries: tries.len(), tries })
     }
 }
 
-/// The plan's learner, led along the first so many recorded steps of learning.
-fn led(plan: &Plan, seed: u64, learning: &Ledger, steps: usize) -> Result<ShippedLearner> {
-    let mut playback = Playback::new(plan, seed, Phase::Learning, learning)?;
-    let (first, mut swaps) = (plan.first_leg(), plan.swaps().peekable());
-    let map = first.state_map()?;
-    let mut learner = shipped_learner(&first.settings.learner, first.task(&*map, seed)?);
-    let mut used = UsedDrivers::new(plan, seed);
-    while playback.done() < steps {
-        while let Some((_, carry, leg, _)) = swaps.next_if(|(from, ..)| *from <= playback.done() as u64) {
-            learner.swap(&leg.settings.learner, leg.mirror(&*map)?, carry);
+impl ValueReasons {
+    /// The same for a reader: of the steps behind it only the latest few, all numbers with five digits.
+    #[must_use]
+    pub fn brief(mut self, tries: usize) -> Self {
+        self.tries.truncate(tries);
+        let links = self.links.iter_mut();
+        let of_links =
+            links.flat_map(|link| [Some(&mut link.tries), link.mean.as_mut(), Some(&mut link.value)]).flatten();
+        let of_tries = self.tries.iter_mut().flat_map(|one| [&mut one.gain, &mut one.weight]);
+        for number in of_links.chain(of_tries).chain([&mut self.value, &mut self.unit]) {
+            *number = five_digits(*number);
         }
-        let Some(step) = playback.advance()? else { break };
-        if step.driver.is_none() {
-            learner.visit(step.state);
-        }
-        used.with(Learns(&mut learner)).learn(&step);
-        if step.moves() {
-            learner.forget();
-        }
+        self
     }
-    Ok(learner)
+}
+
+fn five_digits(number: f64) -> f64 {
+    format!("{number:.4e}").parse().unwrap_or(number)
 }
 
 /// `columns 1 2`, `camera columns 1 2, laser.front`: some digits of a state.

@@ -119,7 +119,8 @@ pub fn plan_with_rules_of(plan: &Plan, behaviour: Arc<Behaviour>) -> Result<Plan
             return other(&behaviour, &row.name(), &row.name()).fail();
         }
     }
-    Plan::with_worlds(behaviour, settings, plan.worlds.clone(), Arc::clone(&plan.filters))
+    let new = Plan::with_worlds(behaviour, settings, plan.worlds.clone(), Arc::clone(&plan.filters))?;
+    Ok(Plan { origins: plan.origins.clone(), ..new })
 }
 
 fn other(behaviour: &Behaviour, what: &str, place: &str) -> Diagnostic {
@@ -221,7 +222,12 @@ fn learn_along(plan: &Plan, seed: u64, ledger: &Ledger, judged: &[Judged], passe
         settings.kind = LearnerKind::Q;
         settings.replay = 0;
     }
-    let mut learner = shipped_learner(&settings, plan.task(&*plan.state_map()?, seed)?);
+    let map = plan.state_map()?;
+    // What a run had learned that this one goes on from, it knows here too.
+    let mut learner = match passes {
+        1 => plan.first_learner(&*map, seed)?,
+        _ => shipped_learner(&settings, plan.task(&*map, seed)?),
+    };
     for _ in 0..passes {
         for (record, judged) in ledger.records().zip(judged) {
             learner.visit(record.state as usize);

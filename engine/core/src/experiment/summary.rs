@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{CombinationFigures, Learned, Plan, Tally, TestRun, UseFigures};
+use super::{CombinationFigures, Learned, Origin, Plan, Tally, TestRun, UseFigures};
 use crate::learner::Policy;
 use crate::stats::Sorted;
 use crate::verdict::{BaseLines, ConditionVerdict, FigureVerdict, RuleTotal, SuccessVerdict, TestFigures};
@@ -16,6 +16,9 @@ pub struct Summary {
     pub world: String,
     /// The seed.
     pub seed: u64,
+    /// The run that it goes on from; absent if it began with nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<FromRun>,
     /// Steps of learning that were done.
     pub steps: u64,
     /// Steps of learning and testing for each second of wall clock.
@@ -69,6 +72,7 @@ impl Summary {
             behaviour: plan.behaviour.name().to_owned(),
             world: plan.worlds.title(),
             seed,
+            from: plan.origin_of(seed).map(|origin| FromRun::of(origin, plan)),
             steps,
             steps_per_second: 0.0,
             learned_at: learned.and_then(|learned| success.learned_at(&learned.tally.counts())),
@@ -98,6 +102,26 @@ impl Summary {
     pub fn timed(mut self, seconds: f64) -> Self {
         self.steps_per_second = ((self.steps + self.test.steps) as f64 / seconds.max(1e-9)).round();
         self
+    }
+}
+
+/// The run that learning went on from.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FromRun {
+    /// Its folder, behaviour, world and seed.
+    pub run: String,
+    /// Steps that were learned in it, and in those that it goes on from.
+    pub steps: u64,
+    /// SHA-256 over every step of it and what it learned.
+    pub state_hash: String,
+    /// What was carried on of it, in words.
+    pub carried: String,
+}
+
+impl FromRun {
+    fn of(origin: &Origin, plan: &Plan) -> Self {
+        let (steps, state_hash) = (origin.steps(), origin.state_hash.clone());
+        Self { run: origin.name(), steps, state_hash, carried: origin.carried(plan) }
     }
 }
 

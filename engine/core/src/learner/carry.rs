@@ -1,8 +1,9 @@
-//! What becomes of the table when the reward changes while the robot learns.
+//! What is carried on of what was learned, when the reward changes or a run goes on from another.
 
+use super::Transition;
 use serde::{Deserialize, Serialize};
 
-/// What becomes of the table.
+/// What becomes of the table, or of the remembered steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Carry {
@@ -14,10 +15,21 @@ pub enum Carry {
     Decay,
     /// It begins again with first values and no visits; only the robot stays where it is.
     Reset,
+    /// Of a learner that remembers its steps: these are judged by the rules that come next, visits and age are forgotten.
+    Rescore,
+}
+
+/// A remembered step, as the rules that come next judge it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rejudged {
+    /// The step, with the reward and the ending of these rules.
+    pub transition: Transition,
+    /// The robot was put elsewhere after it.
+    pub moved: bool,
 }
 
 impl Carry {
-    /// Every way, as it is written, in the order of what is left of the table.
+    /// Every way that can be asked for, as it is written, in the order of what is left of the table.
     pub const ALL: [(&'static str, Self); 3] = [("keep", Self::Keep), ("decay", Self::Decay), ("reset", Self::Reset)];
 
     /// How it is written.
@@ -27,6 +39,7 @@ impl Carry {
             Self::Keep => "keep",
             Self::Decay => "decay",
             Self::Reset => "reset",
+            Self::Rescore => "rescore",
         }
     }
 }

@@ -57,7 +57,7 @@ use crate::allowed::Allowed;
 use crate::saved::{Loading, Saving, Unfit};
 use crate::settings::LearnerSettings;
 
-pub use carry::Carry;
+pub use carry::{Carry, Rejudged};
 pub(crate) use combined::{Combined, Decision};
 pub use memory::{ChainLink, MemoryLearner, PastTry, PooledSums, Pools, ValueChain};
 pub use mirror::Mirror;
@@ -88,6 +88,10 @@ pub trait Learner: Send {
 
     /// Goes on under another reward, with these settings and this mirror; `carry` says what becomes of what was learned.
     fn swap(&mut self, settings: &LearnerSettings, mirror: Option<Mirror>, carry: Carry);
+
+    /// After a swap with [`Carry::Rescore`]: values the latest steps, the oldest first, by what the new rules say of them.
+    /// Whoever remembers no steps has nothing to do, and is never told.
+    fn rescore(&mut self, _steps: &[Rejudged]) {}
 
     /// What was learned so far, without learning on.
     fn policy(&self) -> Policy;

@@ -1,7 +1,8 @@
 //! The learner that the settings name: the one place that knows them all.
 
-use super::{Carry, Learner, MemoryLearner, Mirror, Policy, TableLearner, Task, Transition};
+use super::{Carry, Learner, MemoryLearner, Mirror, Policy, Rejudged, TableLearner, Task, Transition};
 use crate::allowed::Allowed;
+use crate::random::Random;
 use crate::saved::{Loading, Saving, Unfit};
 use crate::settings::{LearnerKind, LearnerSettings};
 
@@ -29,6 +30,15 @@ impl ShippedLearner {
         match self {
             Self::Table(_) => None,
             Self::Memory(learner) => Some(learner),
+        }
+    }
+
+    /// The same with another stream of random numbers.
+    #[must_use]
+    pub(crate) fn with_random(self, random: Random) -> Self {
+        match self {
+            Self::Table(learner) => Self::Table(Box::new(learner.with_random(random))),
+            Self::Memory(learner) => Self::Memory(Box::new(learner.with_random(random))),
         }
     }
 
@@ -72,6 +82,10 @@ impl Learner for ShippedLearner {
 
     fn swap(&mut self, settings: &LearnerSettings, mirror: Option<Mirror>, carry: Carry) {
         self.own_mut().swap(settings, mirror, carry);
+    }
+
+    fn rescore(&mut self, steps: &[Rejudged]) {
+        self.own_mut().rescore(steps);
     }
 
     fn policy(&self) -> Policy {

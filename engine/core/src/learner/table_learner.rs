@@ -33,6 +33,11 @@ impl TableLearner {
         Self { table, softmax, backup: backup(settings, mirror.as_ref()), mirror, failure_is_terminal, random }
     }
 
+    /// The same with another stream of random numbers.
+    pub(super) fn with_random(self, random: Random) -> Self {
+        Self { random, ..self }
+    }
+
     fn count_visit(&mut self, state: usize) -> u64 {
         let visits = self.table.visit(state);
         if let Some(image) = self.mirror.as_ref().map(|mirror| mirror.state(state)).filter(|image| *image != state) {
@@ -68,7 +73,7 @@ impl Learner for TableLearner {
         self.forget();
         let (states, actions) = (self.table.states(), self.table.actions());
         match carry {
-            Carry::Keep => {}
+            Carry::Keep | Carry::Rescore => {}
             Carry::Decay => self.table.halve(settings.cooling_visits),
             Carry::Reset => self.table = first_table(settings, states, actions, &mut self.random),
         }

@@ -13,6 +13,7 @@ mod compile_facts;
 mod draft;
 mod editions;
 mod fact_names;
+mod form;
 mod guards;
 mod is_key;
 mod known;

@@ -55,6 +55,9 @@ pub struct Document {
     pub window_steps: u64,
     /// Steps of learning that are planned, in all legs.
     pub planned_steps: u64,
+    /// The run that learning went on from, and what was carried on, in words; of many seeds, that of the first.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from: Option<String>,
     /// Where the reward was swapped while the robot learned.
     pub swaps: Vec<Swap>,
     /// Forward speed, m/s, and turning speed, rad/s, of each action.
@@ -239,6 +242,7 @@ impl Document {
             period_s: run.period_s,
             window_steps: WINDOW_STEPS,
             planned_steps: plan.learning_steps(),
+            from: goes_on_from(plan),
             swaps: plan.swaps().map(|(step, table, ..)| Swap { step, table }).collect(),
             actions: plan.motions().iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
             grid: [rows, columns],
@@ -298,6 +302,12 @@ pub(crate) fn median_seed(failures: &[f64], at_hand: impl Fn(usize) -> bool) -> 
     let median = failures.iter().copied().collect::<Sorted>().upper_median()?;
     let away = |index: &usize| (failures[*index] - median).abs();
     (0..failures.len()).filter(|index| at_hand(*index)).min_by(|a, b| away(a).total_cmp(&away(b)))
+}
+
+/// The run that learning went on from, and what was carried on, in words.
+fn goes_on_from(plan: &Plan) -> Option<String> {
+    let first = plan.first_leg();
+    first.origins.first().map(|origin| format!("{}: {}", origin.name(), origin.carried(first)))
 }
 
 /// A seed takes about as much room as those before it.

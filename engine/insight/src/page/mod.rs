@@ -37,7 +37,7 @@ pub use ground::{Ground, MoverOutline, SolidOutline};
 pub use html::{Page, page};
 pub use picture::mask_png;
 pub use seed::{SeedData, SeedView, StateRow};
-pub use shot::{Shot, ShotMaker, StagePicture, shot_of};
+pub use shot::{Shot, ShotMaker, StagePicture, recall_of, shot_of};
 pub use track::{MOST_TRACK_STEPS, Moments, MoverTrack, ScanShape, Track};
 
 #[cfg(test)]

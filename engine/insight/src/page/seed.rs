@@ -167,14 +167,14 @@ impl SeedView {
         moments: Moments,
     ) -> Result<Vec<Shot>> {
         let source = |phase, ledger| TrackSource { plan, seed: data.seed, phase, ledger, unit_m, scan };
-        let mut shots = Vec::new();
+        let (mut shots, mut recall) = (Vec::new(), None);
         if !data.learning.is_empty() {
-            let (track, made) = source(Phase::Learning, data.learning).track(moments)?;
+            let (track, made) = source(Phase::Learning, data.learning).track(moments, &mut recall)?;
             self.learning = Some(track);
             shots.extend(made);
         }
         if !data.tested.is_empty() {
-            let (track, made) = source(Phase::Test, data.tested).track(moments)?;
+            let (track, made) = source(Phase::Test, data.tested).track(moments, &mut recall)?;
             self.tested = Some(track);
             shots.extend(made);
         }

@@ -4,9 +4,13 @@
 use serde::Serialize;
 
 use super::picture::data_address;
+use super::track::MOST_PLAYED;
 use engine::diagnostic::Result;
-use engine::experiment::{Ledger, Phase, Plan, Playback, SeenView, Snapshot, StepReasons};
+use engine::experiment::{Ledger, Phase, Plan, Playback, Recall, SeenView, Snapshot, StepReasons};
 use filter_api::Format;
+
+/// Of the steps behind a value a moment names so many.
+const MOST_TRIES: usize = 8;
 
 /// One moment.
 #[derive(Debug, Clone, Serialize)]
@@ -83,6 +87,8 @@ impl ShotMaker<'_> {
     /// # Errors
     /// If a picture cannot be encoded.
     pub fn shot(&self, playback: &Playback<'_>, reasons: StepReasons) -> Result<Shot> {
+        let value = reasons.value.map(|value| value.brief(MOST_TRIES));
+        let reasons = StepReasons { value, ..reasons };
         let cycle = playback.cycle();
         let Snapshot { image, views, state } = Snapshot::of(cycle);
         let size_px = (image.width_px, image.height_px);
@@ -114,21 +120,45 @@ impl Shot {
     }
 }
 
-/// One moment of a recorded phase, with the whole scan; nothing if there is no such step.
+/// One moment of a recorded phase, with the whole scan; nothing if there is no such step. What was learned is told of by the
+/// steps of learning.
 ///
 /// # Errors
 /// If the phase cannot be played.
-pub fn shot_of(plan: &Plan, seed: u64, phase: Phase, ledger: &Ledger, step: usize) -> Result<Option<Shot>> {
+pub fn shot_of(
+    plan: &Plan,
+    seed: u64,
+    [learning, test]: [&Ledger; 2],
+    phase: Phase,
+    step: usize,
+) -> Result<Option<Shot>> {
+    let ledger = if phase == Phase::Learning { learning } else { test };
     if step >= ledger.len() {
         return Ok(None);
     }
     let mut playback = Playback::new(plan, seed, phase, ledger)?;
+    playback = match phase {
+        Phase::Learning => playback.recalling()?,
+        Phase::Test => playback.with_recall(recall_of(plan, seed, learning)?),
+    };
     playback.seek(step)?;
     let Some(reasons) = StepReasons::of_next(&mut playback)? else { return Ok(None) };
     let ranges_m = &playback.cycle().observation().scan.ranges_m;
     let scan_mm = ranges_m.iter().map(|range_m| (range_m * 1000.0).round() as u32).collect();
     let shot = ShotMaker { plan, seed, phase }.shot(&playback, reasons)?;
     Ok(Some(Shot { scan_mm: Some(scan_mm), ..shot }))
+}
+
+/// What a learner that remembers its steps had learned at the end of the recorded steps of learning, if these are not very
+/// many.
+///
+/// # Errors
+/// If the steps cannot be played.
+pub fn recall_of(plan: &Plan, seed: u64, learning: &Ledger) -> Result<Option<Recall>> {
+    if learning.is_empty() || learning.len() > MOST_PLAYED {
+        return Ok(None);
+    }
+    Playback::new(plan, seed, Phase::Learning, learning)?.recalling()?.into_recall()
 }
 
 /// The phase's name in the contract.

@@ -5,13 +5,13 @@ use serde::Serialize;
 use super::shot::{Shot, ShotMaker};
 use crate::markup::base64;
 use engine::diagnostic::Result;
-use engine::experiment::{Ledger, Phase, Plan, Playback, RecordedMovers, StepReasons};
+use engine::experiment::{Ledger, Phase, Plan, Playback, Recall, RecordedMovers, StepReasons};
 use engine::geometry::Pose;
 
 /// The most steps of a track; of more, the first and the last half of as many are kept.
 pub const MOST_TRACK_STEPS: usize = 12_000;
 /// Scans and pictures come from playing the steps again; at most this many are played, starting with the first.
-const MOST_PLAYED: usize = 20_000;
+pub(super) const MOST_PLAYED: usize = 20_000;
 
 /// Which steps bring pictures with them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -118,7 +118,7 @@ pub(super) struct TrackSource<'a> {
 
 impl TrackSource<'_> {
     /// The track, with the moments that have pictures.
-    pub(super) fn track(&self, moments: Moments) -> Result<(Track, Vec<Shot>)> {
+    pub(super) fn track(&self, moments: Moments, recall: &mut Option<Recall>) -> Result<(Track, Vec<Shot>)> {
         let spans = spans(self.ledger.len());
         let mut columns = Columns::default();
         let names = self.names_of_legs();
@@ -129,7 +129,7 @@ impl TrackSource<'_> {
             movers.seek(self.ledger, step);
             columns.add_movers(movers.poses(), self.unit_m);
         }
-        let shots = self.play(moments, &spans, &mut columns)?;
+        let shots = self.play(moments, &spans, &mut columns, recall)?;
         Ok((columns.finish(self.ledger.steps(), spans), shots))
     }
 
@@ -145,13 +145,22 @@ impl TrackSource<'_> {
         std::iter::once((0, places(self.plan.first_leg()))).chain(swaps).collect()
     }
 
-    /// Plays the steps again for what is not recorded: scans and pictures.
-    fn play(&self, moments: Moments, spans: &[[usize; 2]], columns: &mut Columns) -> Result<Vec<Shot>> {
+    /// Plays the steps again for what is not recorded: scans and pictures. What learned goes on from learning to the test.
+    fn play(
+        &self,
+        moments: Moments,
+        spans: &[[usize; 2]],
+        columns: &mut Columns,
+        recall: &mut Option<Recall>,
+    ) -> Result<Vec<Shot>> {
         let wanted = wanted(self.ledger, moments.shots);
         let scans = if moments.scans { self.ledger.len() } else { 0 };
         let until = scans.max(wanted.last().map_or(0, |last| last + 1)).min(MOST_PLAYED);
         let maker = ShotMaker { plan: self.plan, seed: self.seed, phase: self.phase };
-        let mut playback = Playback::new(self.plan, self.seed, self.phase, self.ledger)?;
+        let mut playback = Playback::new(self.plan, self.seed, self.phase, self.ledger)?.with_recall(recall.take());
+        if moments.shots > 0 {
+            playback = playback.recalling()?;
+        }
         let (mut shots, mut wanted) = (Vec::new(), wanted.into_iter().peekable());
         for step in 0..until {
             if wanted.next_if_eq(&step).is_some() {
@@ -167,6 +176,9 @@ impl TrackSource<'_> {
                 columns.scan.extend(kept.map(|range_m| (range_m / most_m * 255.0).round().clamp(0.0, 255.0) as u8));
                 columns.add_measures(playback.cycle().measures());
             }
+        }
+        if self.phase == Phase::Learning && self.ledger.len() <= MOST_PLAYED {
+            *recall = playback.into_recall()?;
         }
         Ok(shots)
     }

@@ -1,6 +1,7 @@
 //! Files that a run leaves and that a later command reads.
 
 mod filter_entry;
+mod going_on;
 mod log;
 mod members;
 mod parts;
@@ -8,6 +9,7 @@ mod policy_file;
 mod run_file;
 mod used;
 
+pub use going_on::going_on_from;
 pub use log::{LOG_FILE, MAGIC, RecordedRun, log_to_bytes, read_log};
 pub use members::{PolicyText, policy_files, with_policies, with_policies_or, with_policy_texts};
 pub use parts::{RUN_FILE, SUMMARY_FILE, seed_folders};

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use toml::Table;
 
 use super::filter_entry::{FilterEntry, ViewEntry};
+use super::going_on::{MOST_ORIGINS, OriginEntry};
 use super::members::{PolicyText, with_policy_texts};
 use super::parts::{RUN_FILE, check_parts};
 use super::policy_file::{POLICY_FILE, policy_of_run};
@@ -18,7 +19,7 @@ use engine::filter::Catalogue;
 use engine::geometry::Twist;
 use engine::learner::Carry;
 use engine::script::{Behaviour, ParamValues};
-use engine::settings::{Edition, SETTINGS, Settings, Value, ViewSettings, apply};
+use engine::settings::{Edition, LearnerKind, SETTINGS, Settings, Value, ViewSettings, apply};
 use engine::world::{Layout, WorldSet};
 
 const FORMAT: u32 = 1;
@@ -28,8 +29,10 @@ const FORMAT_OF_LEGS: u32 = 2;
 const FORMAT_OF_VIEWS: u32 = 3;
 /// The format of a run in more worlds than one.
 const FORMAT_OF_WORLDS: u32 = 4;
+/// The format of a run that goes on from another.
+const FORMAT_OF_ORIGIN: u32 = 5;
 /// As many as `run.steps` may be.
-const MOST_LEG_STEPS: u64 = 1_000_000_000;
+pub(super) const MOST_LEG_STEPS: u64 = 1_000_000_000;
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -70,6 +73,9 @@ struct RunFile {
     /// What was learned before under other scripts, in order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     leg: Vec<LegEntry>,
+    /// The run that it goes on from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    from: Option<OriginEntry>,
 }
 
 /// Learning under one script, until the reward was swapped. Only rules and the learner's settings may differ from leg to leg.
@@ -95,7 +101,7 @@ struct UsedEntry {
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct TextEntry {
+pub(super) struct TextEntry {
     path: String,
     sha256: String,
     text: String,
@@ -112,12 +118,12 @@ impl UsedEntry {
 }
 
 impl TextEntry {
-    fn new(source: &SourceText) -> Self {
+    pub(super) fn new(source: &SourceText) -> Self {
         let path = source.path.display().to_string();
         Self { path, sha256: sha256(&source.text), text: source.text.to_string() }
     }
 
-    fn check(&self, file: &SourceText) -> Result<SourceText> {
+    pub(super) fn check(&self, file: &SourceText) -> Result<SourceText> {
         if sha256(&self.text) != self.sha256 {
             let message = format!("'{}' holds a changed copy of '{}'", file.path.display(), self.path);
             return Diagnostic::new("E-RUN-FILE", message).help("run the behaviour again").fail();
@@ -139,7 +145,7 @@ fn sha256(text: &str) -> String {
 /// # Errors
 /// Never in practice: only if the settings cannot be written as TOML.
 pub fn run_to_toml(plan: &Plan, seed: u64) -> Result<String> {
-    let settings = &plan.settings;
+    let (settings, origin) = (&plan.settings, plan.origin_of(seed));
     let legs = plan.earlier.iter().map(|leg| LegEntry {
         steps: leg.steps,
         table: leg.then,
@@ -148,7 +154,12 @@ pub fn run_to_toml(plan: &Plan, seed: u64) -> Result<String> {
         script: TextEntry::new(leg.plan.behaviour.source()),
     });
     let file = RunFile {
-        format: format(!plan.earlier.is_empty(), !settings.further_views.is_empty(), !plan.worlds.further().is_empty()),
+        format: match origin {
+            Some(_) => FORMAT_OF_ORIGIN,
+            None => {
+                format(!plan.earlier.is_empty(), !settings.further_views.is_empty(), !plan.worlds.further().is_empty())
+            }
+        },
         engine: env!("CARGO_PKG_VERSION").to_owned(),
         behaviour: plan.behaviour.name().to_owned(),
         edition: plan.behaviour.edition().number(),
@@ -166,6 +177,7 @@ pub fn run_to_toml(plan: &Plan, seed: u64) -> Result<String> {
         policy: plan.members.iter().map(|member| TextEntry::new(&member.source)).collect(),
         used: plan.used.iter().map(|used| UsedEntry::new(&used.texts)).collect(),
         leg: legs.collect(),
+        from: origin.map(OriginEntry::new),
     };
     toml::to_string_pretty(&file)
         .map_err(|error| Box::new(Diagnostic::new("E-RUN-FILE", format!("the settings cannot be written: {error}"))))
@@ -240,8 +252,21 @@ impl StoredRun {
         policy: impl FnOnce() -> Result<SourceText>,
         filters: Arc<Catalogue>,
     ) -> Result<Self> {
+        let (plan, seed) = Self::parse_plan(source, filters, MOST_ORIGINS)?;
+        let decider = match plan.learns() {
+            true => Decider::Learned(policy_of_run(&policy()?, &plan, source)?),
+            false => Decider::Combined,
+        };
+        Ok(Self { plan, seed, decider })
+    }
+
+    /// The plan and the seed; at most so many runs may go on from one another.
+    pub(super) fn parse_plan(source: &SourceText, filters: Arc<Catalogue>, deep: usize) -> Result<(Plan, u64)> {
         let file: RunFile = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
-        let expected = format(!file.leg.is_empty(), !file.view.is_empty(), !file.further_world.is_empty());
+        let expected = match &file.from {
+            Some(_) => FORMAT_OF_ORIGIN,
+            None => format(!file.leg.is_empty(), !file.view.is_empty(), !file.further_world.is_empty()),
+        };
         if file.format != expected {
             let message = format!(
                 "'{}' has format {}; this engine reads format {expected} with {} earlier legs, {} further views and {} further worlds",
@@ -278,6 +303,10 @@ impl StoredRun {
                 let message = format!("'{}' has a leg of {} steps", source.path.display(), leg.steps);
                 return Diagnostic::new("E-RUN-FILE", message).help("run the behaviour again").fail();
             }
+            if leg.table == Carry::Rescore && plan.settings.learner.kind != LearnerKind::Memory {
+                let message = format!("'{}' judges the steps of a table, which remembers none", source.path.display());
+                return Diagnostic::new("E-RUN-FILE", message).help("run the behaviour again").fail();
+            }
             let earlier = plan_of(behaviour_of(&leg.script, &leg.params)?, &leg.settings)?;
             match plan.differs_beyond_reward(&earlier) {
                 None => Ok(Leg { plan: earlier, steps: leg.steps, then: leg.table }),
@@ -288,11 +317,9 @@ impl StoredRun {
         let combined = file.policy.iter().map(|policy| policy.check(source).map(PolicyText::alone));
         let texts = combined.chain(file.used.iter().map(|used| used.check(source))).collect::<Result<Vec<_>>>()?;
         let plan = with_policy_texts(plan.after(legs), texts)?;
-        let decider = match plan.learns() {
-            true => Decider::Learned(policy_of_run(&policy()?, &plan, source)?),
-            false => Decider::Combined,
-        };
-        Ok(Self { plan, seed: file.seed, decider })
+        let Some(from) = &file.from else { return Ok((plan, file.seed)) };
+        let origin = from.origin(source, filters, deep)?;
+        Ok((plan.going_on_from(vec![origin])?, file.seed))
     }
 }
 

@@ -5,8 +5,7 @@ use std::path::Path;
 
 use engine::diagnostic::{Diagnostic, Result, all_codes, code_page, excerpt, nearest_name, printable};
 use engine::experiment::{
-    FactReasons, GuardReasons, Phase, Plan, Playback, RuleReasons, SeenView, StepReasons, UseReasons, ValueReasons,
-    ViewStage,
+    FactReasons, GuardReasons, Phase, Plan, Playback, RuleReasons, RunLog, SeenView, StepReasons, UseReasons, ViewStage,
 };
 use engine::robot::Robot;
 use insight::folder::create_folder;
@@ -30,9 +29,6 @@ struct StepReport {
     phase: &'static str,
     #[serde(flatten)]
     reasons: StepReasons,
-    /// Why the learner valued the action as it did, of one that remembers its steps.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    value: Option<ValueReasons>,
     /// What the robot saw when it chose, and at the end of the step: camera, filters, grid.
     pictures: [String; 2],
 }
@@ -59,7 +55,7 @@ pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::r
     };
     let out = arguments.out.as_deref().unwrap_or(Path::new(&arguments.topic));
     create_folder(out)?;
-    let mut playback = Playback::new(plan, *seed, phase, ledger)?;
+    let mut playback = recalling(plan, *seed, phase, &recorded.log)?;
     playback.seek(step)?;
     let stem = if arguments.test { format!("test-step-{step}") } else { format!("step-{step}") };
     let stems = [format!("{stem}-before"), format!("{stem}-after")];
@@ -79,13 +75,7 @@ pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::r
         .write(out, &stems[1])?;
     let pictures = stems.map(|stem| out.join(format!("{stem}.png")).display().to_string());
     let (behaviour, world) = (plan.behaviour.name().to_owned(), plan.worlds.title());
-    let (before, choice) = ((phase == Phase::Learning).then_some(step), [reasons.state.index, reasons.action]);
-    // A policy that is used chose by values of its own.
-    let value = match reasons.used {
-        Some(_) => None,
-        None => ValueReasons::of(plan, *seed, &recorded.log.learning, before, choice)?,
-    };
-    let report = StepReport { behaviour, world, seed: *seed, phase: name, reasons, value, pictures };
+    let report = StepReport { behaviour, world, seed: *seed, phase: name, reasons, pictures };
     console.json(&report)?;
     print(console, playback.plan(), &report)?;
     Ok(0)
@@ -103,6 +93,18 @@ fn code(code: &str, console: &mut Console) -> std::result::Result<u8, ConsoleErr
     console.json(&serde_json::json!({ "code": code, "page": page }))?;
     console.line(&format!("{code}\n\n{page}"))?;
     Ok(0)
+}
+
+/// A phase of the run, with what learned: led along the steps of learning, or as it was before the test.
+fn recalling<'a>(plan: &'a Plan, seed: u64, phase: Phase, log: &'a RunLog) -> Result<Playback<'a>> {
+    let learning = || Playback::new(plan, seed, Phase::Learning, &log.learning)?.recalling();
+    match phase {
+        Phase::Learning => learning(),
+        Phase::Test if plan.learns() => {
+            Ok(Playback::new(plan, seed, phase, &log.test)?.with_recall(learning()?.into_recall()?))
+        }
+        Phase::Test => Playback::new(plan, seed, phase, &log.test),
+    }
 }
 
 /// Camera, each filter, grid.
@@ -177,7 +179,7 @@ fn print(console: &mut Console, plan: &Plan, report: &StepReport) -> std::result
     let after = after(reasons);
     console.line(&format!("reward:    {}{after}", short(reasons.reward)))?;
     print_rules(console, plan, &reasons.rules)?;
-    if let Some(value) = &report.value {
+    if let Some(value) = &reasons.value {
         value_chain(console, value)?;
     }
     console.line(&format!("\npictures:  {}\n           {}", report.pictures[0], report.pictures[1]))
@@ -221,10 +223,10 @@ fn print_attempt(console: &mut Console, reasons: &StepReasons) -> std::result::R
 /// What followed on a step.
 fn after(reasons: &StepReasons) -> String {
     let to = reasons.to.as_ref().map_or(String::new(), |to| format!(" to \"{}\"", printable(to)));
-    match (reasons.recover, reasons.hop) {
-        (true, _) => format!(", then recovery{to}"),
-        (false, true) => ", then a hop: the attempt is broken off here, which is no outcome".to_owned(),
-        (false, false) => String::new(),
+    match (reasons.then, reasons.hop) {
+        (Some(then), _) => format!(", then {then}{to}"),
+        (None, true) => ", then a hop: the attempt is broken off here, which is no outcome".to_owned(),
+        (None, false) => String::new(),
     }
 }
 

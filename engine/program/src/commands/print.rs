@@ -1,7 +1,7 @@
 //! Figures of runs and tests, for people.
 
 use engine::diagnostic::printable;
-use engine::experiment::{CombinationFigures, MemberFigures, Plan, Spread, StartJoined, Summary, UseFigures};
+use engine::experiment::{CombinationFigures, FromRun, MemberFigures, Plan, Spread, StartJoined, Summary, UseFigures};
 use engine::verdict::{BaseLines, Because, SuccessVerdict, TestFigures};
 use insight::verdict_words::{figures, headline, learned, spread_of_figures, tells_learning};
 
@@ -32,6 +32,9 @@ pub(super) fn one_line(summary: &Summary) -> String {
 pub(super) fn print_one(console: &mut Console, plan: &Plan, summary: &Summary) -> Printed {
     let Summary { behaviour, world, seed, steps_per_second, test, base_lines, verdict, .. } = summary;
     console.line(&format!("behaviour: {behaviour} in {world}, seed {seed}, {steps_per_second} steps per second"))?;
+    if let Some(from) = &summary.from {
+        print_from(console, from)?;
+    }
     print_verdict(console, verdict)?;
     match &summary.combination {
         Some(combination) => print_combination(console, combination)?,
@@ -43,6 +46,11 @@ pub(super) fn print_one(console: &mut Console, plan: &Plan, summary: &Summary) -
         console.line(&format!("starts:    {}", starts(&summary.starts)))?;
     }
     print_figures(console, plan, test, base_lines)
+}
+
+/// The run that learning went on from, and what was carried on.
+fn print_from(console: &mut Console, from: &FromRun) -> Printed {
+    console.line(&format!("from:      {}: {}", printable(&from.run), from.carried))
 }
 
 /// How much each policy drove that the script uses.
@@ -83,6 +91,9 @@ pub(super) fn print_many(console: &mut Console, spread: &Spread) -> Printed {
     let count = spread.seeds.len();
     let share = |part: usize| format!("{part} of {count} seeds ({:.0} %)", 100.0 * part as f64 / count as f64);
     console.line(&format!("behaviour: {} in {}, {count} seeds", spread.behaviour, spread.world))?;
+    if let Some(from) = spread.seeds.first().and_then(|seed| seed.from.as_ref()) {
+        print_from(console, from)?;
+    }
     match spread.seeds.first().map(|seed| &seed.verdict) {
         Some(verdict) if verdict.conditions.is_empty() => {
             console.line(&format!("success:   {}", headline(verdict)))?;

@@ -4,6 +4,7 @@ use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::experiment::{Ledger, Phase, Plan, Playback, Record, RuleScore};
 use engine::learner::Carry;
 use engine::outcome::Ending;
+use engine::outcome::Then;
 use insight::store::{RecordedRun, StoredRun};
 use insight::words::short;
 use serde::Serialize;
@@ -73,6 +74,9 @@ struct StepEntry {
     reward: f64,
     rules: Vec<(String, f64)>,
     recover: bool,
+    /// What the script said then: `recover`, `fail`, `goal` or `restart`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    then: Option<&'static str>,
     explored: bool,
     /// The learned policy that chose, where the script uses one.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -199,6 +203,7 @@ fn entry(plan: &Plan, ledger: &Ledger, step: usize) -> Option<StepEntry> {
         reward,
         rules: ledger.fired(step).map(|(rule, value)| (name(rule), value)).collect(),
         recover: then.is_some(),
+        then: then.map(Then::word),
         explored,
         used: driver.and_then(|by| plan.behaviour.uses().nth(usize::from(by))).map(|(text, _)| text.name.clone()),
         contact,
@@ -267,7 +272,7 @@ fn because(step: &StepEntry) -> String {
     let rules: Vec<String> = step.rules.iter().map(|(name, _)| format!("\"{}\"", printable(name))).collect();
     let beam = step.beam.zip(step.beam_angle_deg);
     let beam = beam.map_or(String::new(), |(beam, angle)| format!(", beam {beam}, {}", direction(angle)));
-    let recover = if step.recover { ", then recover" } else { "" };
+    let recover = step.then.map_or(String::new(), |then| format!(", then {then}"));
     let used = step.used.as_ref().map_or(String::new(), |name| format!(" (use \"{}\")", printable(name)));
     format!("{}{beam}{recover}{used}", rules.join(" and "))
 }

@@ -12,11 +12,13 @@ use engine::experiment::{
 };
 use insight::folder::{IfTaken, RunFolder, SeedResult};
 use insight::record::{check_recording, record};
+use insight::store::going_on_from;
 use insight::words::short;
 use pack::Runnable;
 
 use super::check;
 use super::print::{one_line, print_many, print_one};
+use super::sources::catalogue;
 use super::stop::{INTERRUPTED, on_ctrl_c};
 use crate::cli::RunArguments;
 use crate::console::{Console, ConsoleError};
@@ -27,6 +29,10 @@ pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::resul
         super::behaviour::open(&arguments.behaviour, &overrides, &arguments.filters, arguments.allow_unsigned)?;
     let seeds = seeds(arguments)?;
     check_learning(arguments, &plan)?;
+    let plan = match &arguments.from {
+        Some(from) => going_on_from(plan, from, &seeds, &catalogue(&arguments.filters)?)?,
+        None => plan,
+    };
     if let Some(path) = &arguments.record {
         check_record(path, &seeds)?;
     }

@@ -1,6 +1,6 @@
 //! Why a learner that remembers its steps values an action as it does, as text.
 
-use engine::experiment::ValueReasons;
+use engine::experiment::{TryReasons, ValueReasons};
 use insight::words::short;
 
 use crate::console::{Console, ConsoleError};
@@ -23,10 +23,13 @@ pub(super) fn value_chain(console: &mut Console, value: &ValueReasons) -> Result
         };
         console.line(&format!("  {:width$}  {known}  so far {:>8}", link.name, short(link.value)))?;
     }
-    let shown: Vec<String> =
-        value.tries.iter().take(MOST_TRIES).map(|past| format!("{} ({})", past.step, short(past.gain))).collect();
+    let one = |past: &TryReasons| {
+        let earlier = if past.earlier { " of the run before" } else { "" };
+        format!("{}{earlier} ({})", past.step, short(past.gain))
+    };
+    let shown: Vec<String> = value.tries.iter().take(MOST_TRIES).map(one).collect();
     if !shown.is_empty() {
-        let more = value.tries.len().saturating_sub(MOST_TRIES);
+        let more = value.own_tries.saturating_sub(shown.len());
         let more = if more > 0 { format!(", and {more} more") } else { String::new() };
         console
             .line(&format!("  its own tries, as steps of learning (and what followed): {}{more}", shown.join(", ")))?;

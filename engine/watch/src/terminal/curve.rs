@@ -119,6 +119,9 @@ fn signs(view: &View, seeds: usize, before: bool, wide: bool) -> Vec<Span<'stati
     if view.document().is_some_and(|document| !document.swaps.is_empty()) {
         signs.extend([Span::styled("  ┊ ", view.ink.warning()), Span::styled("reward swapped", TerminalInk::quiet())]);
     }
+    if view.document().is_some_and(|document| document.from.is_some()) {
+        signs.push(Span::styled("  goes on from another run", TerminalInk::quiet()));
+    }
     if before {
         signs.extend([Span::styled("  ╌ ", TerminalInk::quiet()), Span::styled("before", TerminalInk::quiet())]);
     }

@@ -10,6 +10,7 @@
 //! Drawing is a pure function from a [`View`] to a buffer of characters ([`screen::draw_screen`]). Every text of a script or a world goes
 //! through [`engine::diagnostic::printable`] before it is drawn. Learning never waits for the terminal.
 
+mod chain;
 mod curve;
 mod dots;
 mod findings;

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use crate::SavedRun;
 use engine::experiment::{Ledger, Phase, Playback, StepReasons};
+use insight::page::recall_of;
 
 /// A newer question is looked for after so many steps.
 const GLANCE_STEPS: usize = 200;
@@ -113,8 +114,11 @@ fn next((desk, changed): &(Mutex<PlayerDesk>, Condvar)) -> Option<Question> {
 fn play(first: &Question, desk: &(Mutex<PlayerDesk>, Condvar)) -> Option<Question> {
     let (plan, mut question) = (&first.run.plan, first.clone());
     let (Some(seed), Some(ledger)) = (first.run.seeds.get(first.seed), first.ledger()) else { return next(desk) };
-    let seed = seed.seed;
-    let mut playback = Playback::new(plan, seed, first.phase, ledger).ok();
+    let playback = Playback::new(plan, seed.seed, first.phase, ledger);
+    let mut playback = playback.and_then(|playback| match first.phase {
+        Phase::Learning => playback.recalling(),
+        Phase::Test => Ok(playback.with_recall(recall_of(plan, seed.seed, &seed.learning)?)),
+    });
     loop {
         let newer = || {
             let desk = lock(&desk.0);

@@ -5,6 +5,7 @@ use ratatui_core::layout::Rect;
 use ratatui_core::style::Style;
 use ratatui_core::text::{Line, Span};
 
+use super::chain::chain;
 use super::ink::TerminalInk;
 use super::lines::{heading, nothing, write, write_all};
 use super::view::View;
@@ -77,6 +78,9 @@ fn lines(view: &View, width: usize) -> Vec<Line<'static>> {
                 .into_iter()
                 .map(|words| Line::styled(format!("  {}", fit(&words, width.saturating_sub(2))), TerminalInk::quiet())),
         );
+    }
+    if let Some(value) = view.moment().and_then(|moment| moment.reasons.value.as_ref()) {
+        lines.extend(chain(value, width));
     }
     lines
 }

@@ -24,6 +24,13 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          runs/wall/1-30 runs/mine/1-30.",
     ),
     (
+        "E-FROM",
+        Kind::State,
+        "A run cannot go on from another one: its states, actions or way of learning are others, its seed is not there, or it \
+         does not come out as it was recorded.\n\
+         What was learned is about states and actions, so these must be the same; world, rules and body may be others.",
+    ),
+    (
         "E-IO",
         Kind::Disk,
         "A file or folder could not be read or written; the message has the system's reason.\n\

@@ -15,7 +15,7 @@ use super::{FIRST_WEIGHT, FIT_STEPS, POOLED_WEIGHT, SIMILAR_WEIGHT};
 use crate::allowed::Allowed;
 use crate::learner::q_table::best_among;
 use crate::learner::softmax::temperature;
-use crate::learner::{Carry, Learner, Mirror, Policy, PolicyRow, Softmax, Task, Transition};
+use crate::learner::{Carry, Learner, Mirror, Policy, PolicyRow, Rejudged, Softmax, Task, Transition};
 use crate::outcome::Ending;
 use crate::random::Random;
 use crate::saved::{Loading, Saving, Unfit};
@@ -165,10 +165,34 @@ impl MemoryLearner {
         self.table.settle(row);
     }
 
+    /// What a step earned, with what delayed rules built up or lost, and what flows back into it.
+    pub(super) fn earned(&self, transition: &Transition) -> (f64, Follows) {
+        let ended = transition.ending.is_some_and(Ending::is_terminal);
+        let follows = match transition.ending {
+            None => Follows::Next,
+            Some(_) if ended && self.failure_is_terminal => Follows::Nothing,
+            Some(_) => Follows::Value,
+        };
+        let next_potential = if ended { 0.0 } else { transition.next_potential };
+        (transition.reward + self.discounts.discount * next_potential - transition.potential, follows)
+    }
+
     /// Values all that is remembered anew.
     fn fit(&mut self) {
         self.since_fit = 0;
         self.sums.renew(&mut self.past, &self.table, self.images.as_ref(), self.discounts);
+        self.value();
+    }
+
+    /// As [`Self::fit`], with the returns of all remembered steps renewed.
+    pub(super) fn fit_all(&mut self) {
+        self.since_fit = 0;
+        self.sums.renew_all(&mut self.past, &self.table, self.images.as_ref(), self.discounts);
+        self.value();
+    }
+
+    /// Values all states by the returns as they are.
+    fn value(&mut self) {
         self.sums.spread(&self.kernel, &mut self.pools, &self.members);
         self.pools.settle(self.scale.first_value(), self.today);
         for row in 0..self.visits.len() {
@@ -176,6 +200,12 @@ impl MemoryLearner {
         }
         self.averaged.add(&self.table.values);
         self.scale.update(&self.sums.totals);
+    }
+
+    /// The same with another stream of random numbers.
+    #[must_use]
+    pub(in crate::learner) fn with_random(self, random: Random) -> Self {
+        Self { random, ..self }
     }
 
     /// Keeps the memory, but not how old it is nor how often each state was visited: what is known leads on, and is tried again.
@@ -186,8 +216,14 @@ impl MemoryLearner {
         self.recount(|back, _| weight_at(-(back as f64)));
     }
 
-    /// Values all remembered steps from nothing, each with a weight by how far back it is and what it weighed.
+    /// Counts all remembered steps from nothing, and values them.
     fn recount(&mut self, weight: impl Fn(usize, f64) -> f64) {
+        self.count_all(weight);
+        self.fit();
+    }
+
+    /// Counts all remembered steps from nothing, each with a weight by how far back it is and what it weighed.
+    pub(super) fn count_all(&mut self, weight: impl Fn(usize, f64) -> f64) {
         self.sums.clear();
         self.pools.clear();
         for back in 0..self.past.len() {
@@ -196,7 +232,6 @@ impl MemoryLearner {
             let step = *step;
             self.sums.count(&step, self.images.as_ref(), 1.0);
         }
-        self.fit();
     }
 
     /// The row of a policy: the mean of the last tables, the latest one where there is none yet.
@@ -230,13 +265,7 @@ impl Learner for MemoryLearner {
     fn learn(&mut self, transition: &Transition) {
         let Transition { state, action, reward, next_state, ending, .. } = *transition;
         let (row, next_row) = (self.row_of(state), self.row_of(next_state));
-        let ended = ending.is_some_and(Ending::is_terminal);
-        let follows = match ending {
-            None => Follows::Next,
-            Some(_) if ended && self.failure_is_terminal => Follows::Nothing,
-            Some(_) => Follows::Value,
-        };
-        let next_potential = if ended { 0.0 } else { transition.next_potential };
+        let (earned, follows) = self.earned(transition);
         self.age += 1;
         self.since_fit += 1;
         let weight = weight_at(self.age as f64);
@@ -246,7 +275,7 @@ impl Learner for MemoryLearner {
             action: action as u32,
             next_row: next_row as u32,
             follows,
-            reward: reward + self.discounts.discount * next_potential - transition.potential,
+            reward: earned,
             next_allowed: transition.next_allowed,
             weight,
             gain: 0.0,
@@ -282,6 +311,8 @@ impl Learner for MemoryLearner {
             Carry::Keep if changed => self.recount(|_, weight| weight),
             Carry::Keep => {}
             Carry::Decay => self.rejuvenate(),
+            // What comes next is told by `rescore`.
+            Carry::Rescore => {}
             Carry::Reset => {
                 self.past.clear();
                 self.scale = ReturnScale::default();
@@ -289,6 +320,10 @@ impl Learner for MemoryLearner {
                 self.averaged.clear();
             }
         }
+    }
+
+    fn rescore(&mut self, steps: &[Rejudged]) {
+        self.judge_anew(steps);
     }
 
     fn policy(&self) -> Policy {

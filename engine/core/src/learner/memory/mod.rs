@@ -28,6 +28,7 @@ mod learner;
 mod met;
 mod past;
 mod pools;
+mod rejudging;
 mod returns;
 mod saving;
 mod scale;

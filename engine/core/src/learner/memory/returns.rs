@@ -27,6 +27,12 @@ impl LatestTable {
         Self { actions, values: Vec::new(), best: Vec::new() }
     }
 
+    /// Forgets all values.
+    pub(super) fn clear(&mut self) {
+        self.values.fill(0.0);
+        self.best.fill(0.0);
+    }
+
     /// Makes room for one more row.
     pub(super) fn meet(&mut self) {
         self.values.resize(self.values.len() + self.actions, 0.0);
@@ -157,6 +163,18 @@ impl ReturnSums {
             self.block = (from + BLOCK_STEPS).min(past.len());
             self.renew_between(past, table, images, by, from..self.block);
         }
+    }
+
+    /// Renews the returns of all steps.
+    pub(super) fn renew_all(
+        &mut self,
+        past: &mut PastSteps,
+        table: &LatestTable,
+        images: Option<&ImageRows>,
+        by: Discounts,
+    ) {
+        let all = 0..past.len();
+        self.renew_between(past, table, images, by, all);
     }
 
     /// Of the steps from so many to so many before the latest, the latest first.

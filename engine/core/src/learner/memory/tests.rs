@@ -1,6 +1,7 @@
 //! The learner against its definition, written down plainly and computed slowly.
 
 mod plain;
+mod rejudged;
 
 use proptest::prelude::*;
 

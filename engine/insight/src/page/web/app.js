@@ -36,6 +36,8 @@ function showDocument(doc, before) {
   const more = worldsOf(doc).length - 1;
   document.title = `${doc.behaviour} in ${doc.world.name}${more ? ` and ${more} more` : ''}`;
   $('title').textContent = document.title;
+  $('from').hidden = !doc.from;
+  $('from').textContent = doc.from ? `Goes on from ${doc.from}.` : '';
   const kept = app.picked ? doc.seeds.findIndex((seed) => seed.seed === wasSeed) : -1;
   app.seed = Math.max(0, kept >= 0 ? kept : doc.seeds.findIndex((seed) => seed.shown_first));
   $('seed').replaceChildren(...doc.seeds.map((seed, index) => el('option', {
@@ -200,7 +202,7 @@ function drawMoment(steps, index) {
     });
   }
   showStep(doc, steps, index, app.step);
-  if (!app.playing || steps.reward[index] !== 0) showReasons(doc, steps, index, exact?.reasons);
+  if (!app.playing || steps.reward[index] !== 0) showReasons(doc, steps, index, exact?.reasons, app.phase === 'learning' ? go : null);
   states.mark(steps.nextState[index]);
   if (drawMoment.window !== window_ || !app.playing) showCauses(doc, seedView(), steps, app.phase, window_, (step) => { pause(); go(step); }, light);
   if (drawMoment.window !== window_ || drawMoment.phase !== app.phase) curve.stale = true;

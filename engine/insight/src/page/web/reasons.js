@@ -45,8 +45,24 @@ function addedBy(doc, track, index, rule) {
   return left;
 }
 
-/** What each rule said: with its facts where the moment brought them, else only which fired. */
-function showReasons(doc, track, index, reasons) {
+/** Why the action was worth what it was: what spoke, from what stands behind all else to its own tries, and these steps. */
+function valueChain({ value, unit, links, own_tries: count, tries }, jump) {
+  const rows = links.map((link) => el('tr', {}, el('td', { text: link.name }), el('td', { text: link.tries.toFixed(1) }),
+    el('td', { text: link.mean === null ? '' : short(link.mean) }), el('td', { text: short(link.value) })));
+  const head = el('tr', { class: 'quiet' }, ...['', 'tries', 'mean', 'so far'].map((text) => el('th', { text })));
+  const own = tries.map(({ step, gain, earlier }) => {
+    const words = `${whole(step)}${earlier ? ' of the run before' : ''} (${short(gain)})`;
+    return earlier || !jump ? el('span', { text: words }) : el('button', { type: 'button', class: 'link', text: words, onclick: () => jump(step) });
+  });
+  const more = count > tries.length ? ` and ${whole(count - tries.length)} more` : '';
+  return el('div', {}, el('div', {}, el('b', { text: `why this action was worth ${short(value)}` }), ` (a spread of ${short(unit)} is usual)`),
+    el('table', {}, el('tbody', {}, head, ...rows)),
+    ...(own.length ? [el('div', { class: 'fact' }, 'its own tries, as steps of learning (and what followed): ',
+      ...own.flatMap((one, at) => (at ? [', ', one] : [one])), more)] : []));
+}
+
+/** What each rule said: with its facts where the moment brought them, else only which fired; and why the action had its value. */
+function showReasons(doc, track, index, reasons, jump) {
   // Before a swap of the reward, another script judged: its rules are known by their names.
   const why = new Map(reasons?.rules.map((rule) => [rule.name, rule]));
   const rules = doc.rules.map((rule, at) => ({ rule, at, fired: track.fired(index, at), why: why.get(rule.name) }));
@@ -62,7 +78,7 @@ function showReasons(doc, track, index, reasons) {
       ...[...new Set(facts)].map((fact) => el('div', { class: 'fact', text: fact })));
   }), ...(reasons?.used ? [el('li', {}, el('b', { text: `use "${reasons.used.name}"` }), ` in its state ${reasons.used.text}`,
     ...reasons.used.parts.flatMap((part) => part.facts.map((fact) => el('div', { class: 'fact', text: factWords(fact, doc) }))))] : []), ...(reasons?.guards ?? []).map((guard) => el('li', { class: 'quiet',
-    text: `${guard.name} forbade ${guard.actions.length} of ${doc.actions.length} actions` })), ...gone.map((rule) => el('li', { class: 'quiet', text: `${rule.name} ${signed(rule.added)}, in the script before the swap` }))));
+    text: `${guard.name} forbade ${guard.actions.length} of ${doc.actions.length} actions` })), ...gone.map((rule) => el('li', { class: 'quiet', text: `${rule.name} ${signed(rule.added)}, in the script before the swap` }))), ...(reasons?.value ? [valueChain(reasons.value, jump)] : []));
 }
 
 /** The causes of one window of the curve: which rules, through which beams, when first. */

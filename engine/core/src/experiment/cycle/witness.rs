@@ -1,0 +1,135 @@
+//! Other rules that judge along: what they say of each step that the robot does under its own.
+
+use std::collections::VecDeque;
+
+use super::Cycle;
+use crate::diagnostic::Result;
+use crate::experiment::parts::Parts;
+use crate::experiment::telling::tell;
+use crate::experiment::{Plan, Step};
+use crate::judge::{Judge, Look, NO_ACTION};
+use crate::learner::{Rejudged, Transition};
+use crate::robot::Robot;
+
+/// A judge that looks on.
+pub(in crate::experiment) struct Witness {
+    judge: Judge,
+    /// What its delayed rules have built up.
+    potential: f64,
+    /// What it said of the latest steps, the oldest first.
+    said: VecDeque<Rejudged>,
+    /// So many are kept.
+    most: usize,
+}
+
+impl Witness {
+    /// The rules of a plan as a judge of what the robot of another plan does.
+    ///
+    /// # Errors
+    /// If they read what that robot does not have.
+    fn new(rules: &Plan, under: &Plan) -> Result<Self> {
+        let parts = Parts { behaviour: &rules.behaviour, settings: &under.settings, filters: &under.filters };
+        let judge = parts.judge()?.in_worlds(under.names_of_starts());
+        let most = under.settings.learner.memory_steps as usize;
+        Ok(Self { judge, potential: 0.0, said: VecDeque::new(), most })
+    }
+
+    fn looks(&self) -> &[Look] {
+        self.judge.looks()
+    }
+
+    pub(super) fn reads_ground(&self) -> bool {
+        self.judge.reads_ground()
+    }
+
+    /// Judges the facts that it was told, after a step.
+    fn judge(&mut self, step: &Step) -> Result<()> {
+        let verdict = self.judge.judge()?;
+        let (before, after) = (self.potential, self.judge.potential());
+        self.potential = after;
+        let transition = Transition {
+            reward: verdict.reward,
+            ending: verdict.then.map(|then| then.ending(verdict.reward)),
+            potential: before,
+            next_potential: after,
+            next_allowed: self.judge.leave().allowed,
+            ..step.transition()
+        };
+        if self.said.len() == self.most {
+            self.said.pop_front();
+        }
+        self.said.push_back(Rejudged { transition, moved: step.moves() });
+        if verdict.then.is_some() && !step.moves() {
+            // Its attempt has ended, though the robot goes on from where it is.
+            self.begin();
+        }
+        Ok(())
+    }
+
+    /// Another attempt begins.
+    fn begin(&mut self) {
+        self.judge.recovered();
+        self.potential = 0.0;
+    }
+}
+
+impl<R: Robot> Cycle<R> {
+    /// A cycle beside which the rules of other plans judge along.
+    ///
+    /// # Errors
+    /// As [`Cycle::new`], and if the other rules read what this robot does not have.
+    pub(in crate::experiment) fn watched(plan: &Plan, robot: R, others: &[&Plan]) -> Result<Self> {
+        let witnesses = others.iter().map(|rules| Witness::new(rules, plan)).collect::<Result<_>>()?;
+        Self::before(plan, robot, plan.eyes()?, Vec::new(), witnesses)
+    }
+
+    /// What the witness that was called first has said; it looks on no more.
+    pub(in crate::experiment) fn dismiss_witness(&mut self) -> Vec<Rejudged> {
+        if self.witnesses.is_empty() { Vec::new() } else { self.witnesses.remove(0).said.into() }
+    }
+
+    /// Looks for all that anybody who judges reads.
+    pub(super) fn look(&mut self) {
+        let mut looks = self.judge.looks().to_vec();
+        for witness in &self.witnesses {
+            let wanted = witness.looks();
+            looks.resize(looks.len().max(wanted.len()), Look::default());
+            for (look, wanted) in looks.iter_mut().zip(wanted) {
+                *look = Look { patch: look.patch || wanted.patch, line: look.line || wanted.line };
+            }
+        }
+        self.eyes[0].look_for(&looks);
+        self.observation.ground = self.reads_ground().then(Default::default);
+    }
+
+    /// All witnesses judge a step.
+    pub(super) fn ask_witnesses(&mut self, step: &Step) -> Result<()> {
+        self.witnesses.iter_mut().try_for_each(|witness| witness.judge(step))
+    }
+
+    /// Tells all witnesses what is known of a step.
+    pub(super) fn tell_witnesses(&mut self, action: usize, step: u64) {
+        let told = self.told(action, step);
+        for witness in &mut self.witnesses {
+            tell(&mut witness.judge, &mut self.eyes[0], &self.observation, self.laser, told);
+        }
+    }
+
+    /// The robot stands where an attempt begins.
+    pub(super) fn set_witnesses_out(&mut self) -> Result<()> {
+        if self.witnesses.is_empty() {
+            return Ok(());
+        }
+        let world = self.robot.world_index();
+        for witness in &mut self.witnesses {
+            witness.judge.go_to(world);
+            witness.begin();
+        }
+        self.tell_witnesses(0, self.steps);
+        for witness in self.witnesses.iter_mut().filter(|witness| !witness.judge.is_calibrated()) {
+            witness.judge.calibrate()?;
+        }
+        self.tell_witnesses(NO_ACTION, self.steps);
+        self.witnesses.iter_mut().filter(|witness| witness.judge.remembers()).try_for_each(|one| one.judge.take())
+    }
+}
