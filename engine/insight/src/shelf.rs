@@ -3,14 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
+use crate::folder::TAG_FILE;
 use crate::report::write_atomic;
 use crate::store::{RUN_FILE, SUMMARY_FILE, read_stored};
 use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::experiment::{Spread, Summary};
 use serde::{Serialize, Serializer};
 
-/// The file that holds a run's tag.
-const TAG_FILE: &str = "tag.txt";
 /// A tag is a word or a few.
 const MOST_TAG: usize = 60;
 /// A part of a run stands in it or one folder below.
@@ -211,18 +210,10 @@ pub fn tag_run(folder: &Path, tag: Option<&str>) -> Result<()> {
     write_atomic(&path, format!("{tag}\n").as_bytes())
 }
 
-/// Removes a run with all its files.
-///
-/// # Errors
-/// `E-RUN-FILE` if the folder is no run; if a file cannot be removed.
-pub fn remove_run(folder: &Path) -> Result<()> {
-    read_stored(&folder.join(RUN_FILE))?;
-    std::fs::remove_dir_all(folder).map_err(|error| Box::new(Diagnostic::disk("remove", folder, &error)))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::folder::remove_run;
 
     fn shelf() -> tempfile::TempDir {
         let place = tempfile::tempdir().unwrap();

@@ -3,6 +3,7 @@
 //! Nothing here prints, reads a clock or writes a file.
 
 mod base_lines;
+mod by_world;
 mod certainty;
 mod changes;
 mod choosers;
@@ -48,6 +49,7 @@ mod use_figures;
 mod used;
 
 pub use base_lines::{base_lines, test_untrained};
+pub use by_world::WorldFigures;
 pub use certainty::CertaintyGrid;
 pub use choosers::{ByState, Frozen, Learns};
 use choosers::{Recorded, Together};

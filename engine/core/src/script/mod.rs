@@ -13,6 +13,7 @@ mod compile_facts;
 mod draft;
 mod editions;
 mod fact_names;
+mod grammar;
 mod guards;
 mod is_key;
 mod known;
@@ -57,6 +58,7 @@ mod words;
 
 pub use behaviour::Behaviour;
 pub(crate) use draft::Draft;
+pub use grammar::grammar;
 pub(crate) use measurable::Nameable;
 pub use named_body::BodyFiles;
 pub use outline::{BeamLoop, Compared, Condition, Gathers, NamedFact, RuleOutline, ScriptOutline, UnusedName};
