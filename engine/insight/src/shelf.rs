@@ -3,9 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-use crate::folder::TAG_FILE;
 use crate::report::write_atomic;
-use crate::store::{RUN_FILE, SUMMARY_FILE, read_stored};
+use crate::store::{RUN_FILE, SUMMARY_FILE, TAG_FILE, read_stored};
 use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::experiment::{Spread, Summary};
 use serde::{Serialize, Serializer};
@@ -213,7 +212,6 @@ pub fn tag_run(folder: &Path, tag: Option<&str>) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::folder::remove_run;
 
     fn shelf() -> tempfile::TempDir {
         let place = tempfile::tempdir().unwrap();
@@ -248,13 +246,5 @@ mod tests {
         // It would be removed with the run that it is a part of.
         let wrong = tag_run(&place.path().join("line/1-30/1"), Some("best")).unwrap_err();
         assert!(wrong.code == "E-RUN-TAG" && wrong.message.contains("1-30"), "{wrong:?}");
-    }
-
-    #[test]
-    fn only_a_run_is_removed() {
-        let place = shelf();
-        assert_eq!(remove_run(&place.path().join("wall")).unwrap_err().code, "E-RUN-FILE");
-        remove_run(&place.path().join("wall/2")).unwrap();
-        assert_eq!(runs_under(place.path()).unwrap().runs.len(), 2);
     }
 }

@@ -20,7 +20,6 @@ use taken::{Claim, taken};
 
 pub use drawn::Redrawn;
 pub use files::{CURVE_FILE, create_folder, curve_of, write_json};
-pub(crate) use removal::TAG_FILE;
 pub use removal::remove_run;
 pub use test_folder::TestFolder;
 

@@ -5,11 +5,9 @@ use std::path::{Path, PathBuf};
 use super::CURVE_FILE;
 use super::pages::PAGE_FILE;
 use super::pictures::PICTURES;
-use crate::store::{LOG_FILE, POLICY_FILE, RUN_FILE, SUMMARY_FILE, read_stored};
+use crate::store::{LOG_FILE, POLICY_FILE, RUN_FILE, SUMMARY_FILE, TAG_FILE, read_stored};
 use engine::diagnostic::{Diagnostic, Result};
 
-/// The file that holds a run's tag.
-pub(crate) const TAG_FILE: &str = "tag.txt";
 /// Files of a run under names of their own.
 const FILES: [&str; 8] =
     [RUN_FILE, SUMMARY_FILE, POLICY_FILE, LOG_FILE, CURVE_FILE, PAGE_FILE, TAG_FILE, "disagreements.csv"];
