@@ -80,6 +80,8 @@ mod robots;
 mod run_folder;
 /// Every script and world that ships can be used, and the reference pages are current.
 mod shipped;
+/// What people stumbled over: told where it stands, with what to type next.
+mod stumbles;
 /// The live view in the terminal: its screen, its keys, and itself in a pseudo terminal.
 #[cfg(feature = "tui")]
 mod terminal;

@@ -4,13 +4,11 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 use crate::report::write_atomic;
-use crate::store::{RUN_FILE, SUMMARY_FILE, read_stored};
+use crate::store::{RUN_FILE, SUMMARY_FILE, TAG_FILE, read_stored};
 use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::experiment::{Spread, Summary};
 use serde::{Serialize, Serializer};
 
-/// The file that holds a run's tag.
-const TAG_FILE: &str = "tag.txt";
 /// A tag is a word or a few.
 const MOST_TAG: usize = 60;
 /// A part of a run stands in it or one folder below.
@@ -211,15 +209,6 @@ pub fn tag_run(folder: &Path, tag: Option<&str>) -> Result<()> {
     write_atomic(&path, format!("{tag}\n").as_bytes())
 }
 
-/// Removes a run with all its files.
-///
-/// # Errors
-/// `E-RUN-FILE` if the folder is no run; if a file cannot be removed.
-pub fn remove_run(folder: &Path) -> Result<()> {
-    read_stored(&folder.join(RUN_FILE))?;
-    std::fs::remove_dir_all(folder).map_err(|error| Box::new(Diagnostic::disk("remove", folder, &error)))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -257,13 +246,5 @@ mod tests {
         // It would be removed with the run that it is a part of.
         let wrong = tag_run(&place.path().join("line/1-30/1"), Some("best")).unwrap_err();
         assert!(wrong.code == "E-RUN-TAG" && wrong.message.contains("1-30"), "{wrong:?}");
-    }
-
-    #[test]
-    fn only_a_run_is_removed() {
-        let place = shelf();
-        assert_eq!(remove_run(&place.path().join("wall")).unwrap_err().code, "E-RUN-FILE");
-        remove_run(&place.path().join("wall/2")).unwrap();
-        assert_eq!(runs_under(place.path()).unwrap().runs.len(), 2);
     }
 }

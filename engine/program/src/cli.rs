@@ -5,6 +5,7 @@ mod check;
 mod language;
 mod new;
 mod pack;
+mod plugins;
 mod recorded;
 mod runs;
 mod watch;
@@ -18,6 +19,7 @@ pub(crate) use check::{CheckArguments, CheckFormat};
 pub(crate) use language::{ReferenceArguments, UpgradeArguments};
 pub(crate) use new::{NewArguments, NewCommand, WorldArguments, WorldCommand};
 pub(crate) use pack::*;
+pub(crate) use plugins::{PluginsArguments, PluginsCommand};
 pub(crate) use recorded::{ExplainArguments, ReplayArguments, RescoreArguments};
 pub(crate) use runs::{CompareArguments, RunsArguments, RunsCommand};
 pub(crate) use watch::WatchArguments;
@@ -189,6 +191,7 @@ pub(crate) struct TestArguments {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = "Exit status: 0 measured; 2 usage; 3 bad input file; 5 refused for trust; 6 files and disk.")]
 pub(crate) struct BenchArguments {
     /// The behaviour whose step is measured
     #[arg(long, default_value = "scripts/wall.rhai")]
@@ -289,31 +292,6 @@ pub(crate) struct FilterArguments {
     pub(crate) filters: FilterSources,
 }
 
-#[derive(Debug, Args)]
-pub(crate) struct PluginsArguments {
-    #[command(subcommand)]
-    pub(crate) command: Option<PluginsCommand>,
-    /// Print as JSON on standard output, and nothing else there
-    #[arg(long, global = true)]
-    pub(crate) json: bool,
-    #[command(flatten)]
-    pub(crate) filters: FilterSources,
-}
-
-#[derive(Debug, Subcommand)]
-pub(crate) enum PluginsCommand {
-    /// Print the manual of one filter
-    Show {
-        /// The filter's name, such as sobel
-        name: String,
-    },
-    /// Try whether a filter keeps the law of filters, over many frames and settings
-    Check {
-        /// The filter's name, such as sobel
-        name: String,
-    },
-}
-
 /// Where filters come from, besides those linked in.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Filters from elsewhere")]
@@ -371,6 +349,19 @@ fn share(text: &str) -> Result<f64, String> {
 mod tests {
     use super::*;
     use clap::CommandFactory;
+
+    #[test]
+    fn every_command_says_its_exit_statuses() {
+        fn silent(command: &clap::Command) -> Vec<String> {
+            let all = command.get_subcommands().filter(|one| !one.is_hide_set() && one.get_name() != "help");
+            all.flat_map(|one| {
+                let told = one.get_after_help().is_some_and(|help| help.to_string().contains("Exit status: 0 "));
+                (!told).then(|| one.get_name().to_owned()).into_iter().chain(silent(one))
+            })
+            .collect()
+        }
+        assert_eq!(silent(&Cli::command()), Vec::<String>::new());
+    }
 
     #[test]
     fn the_command_line_is_consistent() {

@@ -154,11 +154,15 @@ impl Relearner {
 
     /// What this save learns: from nothing, or what was learned before under another reward.
     fn next_session(&mut self, mut plan: Plan, why: Why) -> Result<Session> {
+        let mut note = String::new();
         if self.desk.settings.keep.is_some() {
             // A window of the curve is of one reward only.
-            plan.settings.run.steps = plan.settings.run.steps.next_multiple_of(WINDOW_STEPS);
+            let (asked, whole) = (plan.settings.run.steps, plan.settings.run.steps.next_multiple_of(WINDOW_STEPS));
+            plan.settings.run.steps = whole;
+            if whole != asked {
+                note = format!("{whole} steps for {asked}, since --keep goes by whole windows of {WINDOW_STEPS}; ");
+            }
         }
-        let mut note = String::new();
         let kept = self.session.take().filter(|_| why == Why::Saved);
         if let (Some(carry), Some(mut session)) = (self.desk.settings.keep, kept) {
             match plan.differs_beyond_reward(session.plan()) {
@@ -166,8 +170,12 @@ impl Relearner {
                     session.swap(plan, carry)?;
                     return Ok(session);
                 }
-                Some(what) if carry == Carry::Reset => note = format!("{what} changed, so from nothing; "),
-                Some(what) => (plan, note) = gone_on(plan, &session, &what)?,
+                Some(what) if carry == Carry::Reset => note.push_str(&format!("{what} changed, so from nothing; ")),
+                Some(what) => {
+                    let (on, how) = gone_on(plan, &session, &what)?;
+                    plan = on;
+                    note.push_str(&how);
+                }
             }
         }
         let whole = self.desk.settings.keep.is_some() || self.desk.settings.finished.is_some();
@@ -243,6 +251,7 @@ impl Relearner {
         let WatchSettings { behaviour, overrides, filters, .. } = &self.desk.settings;
         let mut chosen = self.asker.chosen.lock().unwrap_or_else(PoisonError::into_inner);
         let mut with = overrides.clone();
+        with.set.retain(|pair| !chosen.keys().any(|name| pair.split('=').next().is_some_and(|key| key.trim() == name)));
         with.set.extend(chosen.iter().map(|(name, value)| format!("{name}={value}")));
         match Plan::load(behaviour, &with, filters) {
             Err(error) if error.code == "E-SET" && !chosen.is_empty() => {

@@ -30,6 +30,7 @@ pub(super) fn with_params(behaviour: Arc<Behaviour>, overrides: &Overrides) -> R
 /// The settings with the changes.
 pub(super) fn changed(settings: &Settings, params: &[Param], overrides: &Overrides) -> Result<Settings> {
     let mut settings = settings.clone();
+    refuse_repeated(overrides)?;
     for pair in &overrides.set {
         set(&mut settings, params, pair)?;
     }
@@ -52,6 +53,19 @@ pub(super) fn changed(settings: &Settings, params: &[Param], overrides: &Overrid
     }
     refuse_drawn(&settings, overrides)?;
     Ok(settings)
+}
+
+/// Refuses two values of one key: which of them was meant, nobody can tell.
+fn refuse_repeated(overrides: &Overrides) -> Result<()> {
+    let key = |pair: &str| pair.split_once('=').map_or(pair, |(key, _)| key).trim().to_owned();
+    for (index, pair) in overrides.set.iter().enumerate() {
+        if let Some(before) = overrides.set[..index].iter().find(|before| key(before) == key(pair)) {
+            let [key, before, pair] = [&key(pair), before, pair].map(|text| printable(text));
+            let message = format!("'{key}' is set twice: '{before}' and '{pair}'");
+            return Diagnostic::new("E-SET", message).help("keep one of the two").fail();
+        }
+    }
+    Ok(())
 }
 
 /// Refuses to set what is drawn anew for each attempt.
@@ -93,7 +107,28 @@ fn set(settings: &mut Settings, params: &[Param], pair: &str) -> Result<()> {
             None => view.set_grid(key, &value).map_err(|error| Box::new(refused(error, pair))),
         };
     }
+    if group == "view" {
+        return of_no_view(settings, key, pair).fail();
+    }
     apply(settings, group, key, &value).map_err(|error| Box::new(refused(error, pair)))
+}
+
+/// For who writes `view.red.rows`: the settings of a view stand under its own name.
+fn of_no_view(settings: &Settings, key: &str, pair: &str) -> Diagnostic {
+    let names: Vec<&str> =
+        settings.views().map(|view| view.name.as_str()).filter(|name| *name != UNNAMED_VIEW).collect();
+    let (name, rest) = key.split_once('.').unwrap_or(("", key));
+    let help = match names.iter().find(|known| **known == name) {
+        Some(known) => format!(
+            "write --set {known}.{}",
+            printable(pair.split_once("view.").map_or(rest, |of| &of.1[name.len() + 1..]))
+        ),
+        None if names.is_empty() => {
+            "the script has no named views: write --set grid.rows=3 or --set filter.NAME.PARAMETER=60".to_owned()
+        }
+        None => format!("settings of a view stand under its name; there are: {}", names.join(", ")),
+    };
+    Diagnostic::new("E-SET", format!("there is no group of settings 'view': '{}'", printable(pair))).help(help)
 }
 
 fn refused(error: SettingError, pair: &str) -> Diagnostic {

@@ -3,6 +3,7 @@
 //! Nothing here prints, reads a clock or writes a file.
 
 mod base_lines;
+mod by_world;
 mod carrying;
 mod certainty;
 mod changes;
@@ -50,6 +51,7 @@ mod use_figures;
 mod used;
 
 pub use base_lines::{base_lines, test_untrained};
+pub use by_world::WorldFigures;
 pub use carrying::rejudge;
 pub use certainty::CertaintyGrid;
 pub use choosers::{ByState, Frozen, Learns};

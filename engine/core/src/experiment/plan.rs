@@ -189,9 +189,10 @@ impl Plan {
         plan.find_unnamed(&mut mistakes);
         plan.find_unvaried(&mut mistakes);
         let robot = ["camera", "laser", "movers", "recovery", "robot", "run"];
-        if !robot.iter().any(|call| unread.any_of(call)) && mistakes.take(plan.try_worlds()).is_some() && sees {
-            let alone = (0..plan.worlds.layouts().len()).map(|world| plan.in_world(world));
-            mistakes.take(alone.into_iter().try_for_each(|plan| outlook::check_outlook(&plan)));
+        if !robot.iter().any(|call| unread.any_of(call)) && plan.try_worlds(&mut mistakes) && sees {
+            for world in 0..plan.worlds.layouts().len() {
+                mistakes.take(outlook::check_outlook(&plan.in_world(world)));
+            }
         }
         mistakes.end().map(|()| plan)
     }

@@ -38,8 +38,9 @@ pub(super) fn load_worlds(
         return None;
     }
     let mut loaded = Vec::new();
-    for share in shares {
-        let layouts = load_share(behaviour, &share.name, place(), settings);
+    for (number, share) in shares.iter().enumerate() {
+        let own = place().map(|call| behaviour.place_of(&format!("worlds:{number}")).unwrap_or(call));
+        let layouts = load_share(behaviour, &share.name, own, settings);
         loaded.extend(mistakes.take(layouts).map(|layouts| (share.weight, layouts)));
     }
     if loaded.len() < shares.len() { None } else { WorldSet::new(loaded) }
@@ -95,11 +96,17 @@ impl Plan {
         Self { worlds: WorldSet::alone(Arc::clone(&layout)), layout, ..self.clone() }
     }
 
-    /// Puts a robot into each world, and into the home world with each end of what is drawn.
-    pub(super) fn try_worlds(&self) -> Result<()> {
-        let settings = Settings { randomise: Vec::new(), ..self.settings.clone() };
-        self.worlds.layouts().iter().try_for_each(|layout| SimulatedRobot::new(layout, &settings, 0).map(drop))?;
-        SimulatedRobot::try_extremes(&self.layout, &self.settings)
+    /// Puts a robot into each world, and into the home world with each end of what is drawn; adds what is wrong with each. Whether
+    /// there is nothing.
+    pub(super) fn try_worlds(&self, mistakes: &mut Mistakes) -> bool {
+        let (settings, before) = (Settings { randomise: Vec::new(), ..self.settings.clone() }, mistakes.count());
+        for layout in self.worlds.layouts() {
+            mistakes.take(SimulatedRobot::new(layout, &settings, 0));
+        }
+        if mistakes.count() == before {
+            mistakes.take(SimulatedRobot::try_extremes(&self.layout, &self.settings));
+        }
+        mistakes.count() == before
     }
 
     /// Adds rules that can never fire, unless the laser is drawn anew.
@@ -111,9 +118,9 @@ impl Plan {
         }
     }
 
-    /// Adds what the script names, or is measured by, and a world does not have; of several worlds, of the first.
+    /// Adds what the script names, or is measured by, and a world does not have; of several worlds, for each place in the script the
+    /// first that lacks it.
     pub(super) fn find_unnamed(&self, mistakes: &mut Mistakes) {
-        let before = mistakes.count();
         for layout in self.worlds.layouts() {
             let Layout { name, starts, movers, places, gates, lap, .. } = &**layout;
             let starts: Vec<&str> = starts.iter().map(|start| start.name.as_str()).collect();
@@ -130,9 +137,6 @@ impl Plan {
             };
             self.behaviour.find_unmeasurable(&world, mistakes);
             self.behaviour.find_unplaced(&self.settings, &world, mistakes);
-            if mistakes.count() > before {
-                return;
-            }
         }
     }
 

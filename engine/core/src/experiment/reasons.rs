@@ -121,6 +121,9 @@ pub struct RuleReasons {
     pub held: u32,
     /// For how many steps it must hold to fire.
     pub needed: u32,
+    /// Whether it fires once, has fired, and its condition has held ever since.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub spent: bool,
     /// The parts of its condition.
     pub parts: Vec<PartReasons>,
 }
@@ -225,6 +228,7 @@ impl RuleReasons {
             asked: true,
             held,
             needed,
+            spent: judge.is_spent(rule),
             parts: judge.evidence(rule).into_iter().map(|part| PartReasons::of(plan, part)).collect(),
         }
     }

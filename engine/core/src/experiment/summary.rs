@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{CombinationFigures, Learned, Origin, Plan, Tally, TestRun, UseFigures};
+use super::{CombinationFigures, Learned, Origin, Plan, Tally, TestRun, UseFigures, WorldFigures};
 use crate::learner::Policy;
 use crate::stats::Sorted;
 use crate::verdict::{BaseLines, ConditionVerdict, FigureVerdict, RuleTotal, SuccessVerdict, TestFigures};
@@ -56,6 +56,9 @@ pub struct Summary {
     /// The learned policies that the script uses and how much each drove in the test; absent from a script that uses none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub uses: Vec<UseFigures>,
+    /// What the test did in each of several worlds; absent from a run in one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub worlds: Vec<WorldFigures>,
 }
 
 impl Summary {
@@ -92,6 +95,7 @@ impl Summary {
             verdict: success.verdict(&test, lines),
             base_lines: lines.clone(),
             uses: tested.uses.clone(),
+            worlds: tested.worlds.clone(),
             combination: tested.combination.as_ref().map(|combination| combination.figures.clone()),
             test,
         }

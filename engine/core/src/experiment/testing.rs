@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::by_world::{WorldCounts, WorldFigures};
 use super::digest::StateHash;
 use super::measured::figures;
 use super::probes::Probes;
@@ -51,6 +52,8 @@ pub struct TestRun {
     pub uses: Vec<UseFigures>,
     /// Of several policies as one: who decided, and where they disagreed.
     pub combination: Option<CombinationTest>,
+    /// Of several worlds: what was done in each.
+    pub worlds: Vec<WorldFigures>,
 }
 
 /// What a test of several policies found beside the figures.
@@ -187,7 +190,8 @@ pub fn test_robot<R: Robot>(
     let (mut probes, mut staged) = (Probes::new(plan, cycle.robot()), Staged::new(plan));
     let chosen = vec![0; plan.motions().len()];
     let used = UseCounts::new(plan);
-    let mut counts = Counts { tally, chosen, used, attempt_steps: 0, goals_steps, stop };
+    let worlds = WorldCounts::new(plan);
+    let mut counts = Counts { tally, chosen, used, worlds, attempt_steps: 0, goals_steps, stop };
     let mut observers =
         (&mut hash, ((&mut truth, also), ((&mut trail, (&mut probes, &mut staged)), (&mut glimpse, &mut counts))));
     let steps = drive(cycle, chooser, &mut observers, run.test_steps)?;
@@ -195,9 +199,9 @@ pub fn test_robot<R: Robot>(
         figures(plan, steps, &counts.tally, &counts.goals_steps, truth.as_ref(), probes.finish(), staged.finish());
     let snapshot = glimpse.taken.unwrap_or_else(|| Snapshot::of(cycle));
     let (trail, state_hash) = (trail.finish(), hash.finish());
-    let Counts { tally, chosen, used, .. } = counts;
-    let uses = used.figures(plan);
-    Ok(TestRun { figures, trail, snapshot, tally, chosen, state_hash, combination: None, uses })
+    let Counts { tally, chosen, used, worlds, .. } = counts;
+    let (uses, worlds) = (used.figures(plan), worlds.figures(plan));
+    Ok(TestRun { figures, trail, snapshot, tally, chosen, state_hash, combination: None, uses, worlds })
 }
 
 /// Counts, and looks at the end of every window whether to stop.
@@ -206,6 +210,7 @@ struct Counts<'a> {
     /// By action: how often it was chosen.
     chosen: Vec<u64>,
     used: UseCounts,
+    worlds: WorldCounts,
     /// Steps of the present attempt, and of each that reached its goal.
     attempt_steps: u32,
     goals_steps: Vec<u32>,
@@ -216,6 +221,7 @@ impl<R: Robot> Observer<R> for Counts<'_> {
     fn stepped(&mut self, cycle: &Cycle<R>, step: &Step) -> ControlFlow<()> {
         self.attempt_steps += 1;
         self.used.count(step);
+        self.worlds.count(cycle.robot().world_index(), step);
         if let Some(count) = self.chosen.get_mut(step.action) {
             *count += 1;
         }

@@ -1,12 +1,16 @@
-//! Whether a rule can fire at all: intervals through its condition.
+//! Whether a rule can fire at all, and a guard or a use hold: intervals through its condition.
 
 use super::expression::{Arithmetic, BeamSpan, Comparison, Flag, Number};
 use super::fact_columns::Reach;
 use super::fact_table::FactId;
 use super::facts::{Facts, decimal};
+use super::guards::CompiledGuard;
+use super::readings::Part;
 use super::rule::{Clause, CompiledRule};
-use crate::diagnostic::{Diagnostic, Result, SourceText};
+use super::uses::CompiledUse;
+use crate::diagnostic::{Diagnostic, Result, SourceText, printable};
 use crate::settings::LaserSettings;
+use std::ops::Range;
 
 type Interval = (f64, f64);
 
@@ -55,6 +59,42 @@ impl Limits {
 /// If it never can, with the values that it would have to take.
 pub(crate) fn check_rule(source: &SourceText, rule: &CompiledRule, limits: &Limits) -> Result<()> {
     let Clause::Native(condition) = &rule.condition else { return Ok(()) };
+    let never = || ("E-SCRIPT-RULE", format!("{} can never fire", rule.shown()));
+    check(source, never, condition, rule.condition_span.clone(), limits)
+}
+
+/// Checks that a guard's condition can hold within the limits.
+///
+/// # Errors
+/// As [`check_rule`].
+pub(crate) fn check_guard(source: &SourceText, guard: &CompiledGuard, limits: &Limits) -> Result<()> {
+    let never = || ("E-SCRIPT-GUARD", format!("guard \"{}\" can never hold", printable(&guard.text.name)));
+    check(source, never, &guard.condition, bounds(&guard.parts), limits)
+}
+
+/// Checks that a use's condition, if it has one, can hold within the limits.
+///
+/// # Errors
+/// As [`check_rule`].
+pub(crate) fn check_use(source: &SourceText, one: &CompiledUse, limits: &Limits) -> Result<()> {
+    let Some(condition) = &one.condition else { return Ok(()) };
+    let never = || ("E-SCRIPT-USE", format!("this use of \"{}\" can never hold", printable(&one.text.name)));
+    check(source, never, condition, bounds(&one.parts), limits)
+}
+
+/// The bytes from the first part of a condition to its last.
+fn bounds(parts: &[Part]) -> Range<usize> {
+    let start = parts.iter().map(|part| part.span.start).min().unwrap_or(0);
+    start..parts.iter().map(|part| part.span.end).max().unwrap_or(start)
+}
+
+fn check(
+    source: &SourceText,
+    never: impl FnOnce() -> (&'static str, String),
+    condition: &Flag,
+    span: Range<usize>,
+    limits: &Limits,
+) -> Result<()> {
     let Some(why) = impossible(condition, limits) else { return Ok(()) };
     let help = match limits.laser.tilt_deg > 0.0 {
         true => {
@@ -62,10 +102,8 @@ pub(crate) fn check_rule(source: &SourceText, rule: &CompiledRule, limits: &Limi
         }
         false => "ranges are in metres, shares from 0 to 1, angles in radians",
     };
-    Diagnostic::new("E-SCRIPT-RULE", format!("{} can never fire", rule.shown()))
-        .at(source, rule.condition_span.clone(), why)
-        .help(help)
-        .fail()
+    let (code, message) = never();
+    Diagnostic::new(code, message).at(source, span, why).help(help).fail()
 }
 
 /// Why a condition never holds; nothing if it can.

@@ -24,7 +24,7 @@ pub(crate) const WITHHELD: &[Withheld] = &[
     Withheld {
         words: &["distance_from_center", "distance_from_centre", "is_left_of_center", "track_width", "route_offset"],
         success: "test.route_offset_m < 0.3",
-        fact: "camera.cell(row, column), or laser.left and laser.right",
+        fact: "camera.line_offset_m, how far left of it the line passes that the view sees; between walls laser.left and laser.right",
     },
     Withheld {
         words: &["all_wheels_on_track", "is_offtrack", "off_track", "on_track", "off_route"],

@@ -131,7 +131,7 @@ impl Behaviour {
         })
     }
 
-    /// Adds every rule that can never fire with this laser, on a floor at most `drop_m` metres below the robot's own
+    /// Adds every rule that can never fire, and every guard and use that can never hold, with this laser, on a floor at most `drop_m` metres below the robot's own
     /// ground (infinite where that is not known), unless there is a mistake in its condition already.
     pub(crate) fn find_unreachable(&self, laser: &LaserSettings, drop_m: f64, mistakes: &mut Mistakes) {
         let (limits, source) = (reach::Limits::new(laser, drop_m), self.source());
@@ -139,6 +139,12 @@ impl Behaviour {
             if !mistakes.within(source, &rule.condition_span) {
                 mistakes.take(reach::check_rule(source, rule, &limits));
             }
+        }
+        for guard in &self.compiled.guards {
+            mistakes.take(reach::check_guard(source, guard, &limits));
+        }
+        for one in &self.compiled.uses {
+            mistakes.take(reach::check_use(source, one, &limits));
         }
     }
 

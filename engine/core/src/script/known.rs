@@ -85,9 +85,20 @@ impl Looking<'_> {
             return Some(wrong.help("compare with a number, or with one value of it: values[0]"));
         }
         let Some(Known::Fraction(value)) = self.known(expr) else { return None };
-        let help = "look for a division by 0, or the root or logarithm of a negative number";
-        let found = Diagnostic::new("E-SCRIPT-TYPE", "this gives no number").at(source, place, "always NaN").help(help);
-        value.is_nan().then_some(found)
+        let (message, label, help) = match () {
+            () if value.is_nan() => (
+                "this gives no number",
+                "always NaN",
+                "look for a division by 0, or the root or logarithm of a negative number",
+            ),
+            () if value.is_infinite() => (
+                "this gives no finite number",
+                "always infinite",
+                "look for a division by 0, or a number too large; for a limit that is never reached write 1e6",
+            ),
+            () => return None,
+        };
+        Some(Diagnostic::new("E-SCRIPT-TYPE", message).at(source, place, label).help(help))
     }
 
     /// Two whole numbers of which the first is no multiple of the second. Two literals are told elsewhere.

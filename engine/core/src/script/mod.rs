@@ -14,6 +14,7 @@ mod draft;
 mod editions;
 mod fact_names;
 mod form;
+mod grammar;
 mod guards;
 mod is_key;
 mod known;
@@ -58,6 +59,7 @@ mod words;
 
 pub use behaviour::Behaviour;
 pub(crate) use draft::Draft;
+pub use grammar::grammar;
 pub(crate) use measurable::Nameable;
 pub use named_body::BodyFiles;
 pub use outline::{BeamLoop, Compared, Condition, Gathers, NamedFact, RuleOutline, ScriptOutline, UnusedName};

@@ -333,6 +333,12 @@ fn entries(ast: &AST) -> Entries {
                 entries.insert((*at, CONDITION.to_owned()), (condition.start_position(), condition.start_position()));
             }
             for argument in &call.args {
+                // What stands in a list has its number for a key.
+                if let ("worlds", Expr::Array(list, _)) = (call.name.as_str(), argument) {
+                    for (number, value) in list.iter().enumerate() {
+                        entries.insert((*at, format!("#{number}")), (value.start_position(), value.start_position()));
+                    }
+                }
                 let Expr::Map(map, _) = argument else { continue };
                 for (ident, value) in &map.0 {
                     let place = (ident.pos, value.start_position());

@@ -14,6 +14,7 @@ const MAX_VIEWS: usize = 8;
 const MAX_FILTERS: usize = 8;
 const MAX_PARTS: usize = 8;
 const VIEW_FORM: &str = "view(\"red\", filter(\"colour\"), grid(#{ rows: 2, columns: 3 }));";
+const WHERE_FORM: &str = "filter(\"where\", \"r > 1.5 * g && r > 60\");";
 const STATE_FORM: &str = "state(\"red\", bins(laser.front, [0.5, 1.0]));";
 
 impl SetupReader<'_> {
@@ -196,6 +197,8 @@ impl SetupReader<'_> {
         form: &str,
     ) -> Result<()> {
         let mut filter = FilterSettings::new(&self.word(name, form)?);
+        let is_where = filter.name == "where";
+        let form = if is_where { WHERE_FORM } else { form };
         let stage = view.place(&format!("filter:{}", view.filters.len()));
         self.mark(stage.clone(), self.call)?;
         let mut parameters = parameters.unwrap_or_else(|| Map::new().into());
@@ -215,6 +218,13 @@ impl SetupReader<'_> {
             if let (CONDITION, Ok(condition)) = (key.as_str(), value.clone().into_immutable_string()) {
                 filter.condition = Some(condition.to_string());
                 self.mark(format!("{stage}.{key}"), position)?;
+                continue;
+            }
+            if let (true, Ok(condition)) = (is_where, value.clone().into_immutable_string()) {
+                let message = format!("'{}' is no parameter of filter \"where\"", printable(&key));
+                let write = format!("filter(\"where\", \"{}\");", printable(&condition));
+                let wrong = self.wrong(self.entry(&key).0, message, "the condition stands alone", &write);
+                self.tell("filter", &key, wrong);
                 continue;
             }
             let switch = value.as_bool().ok().map(|on| f64::from(u8::from(on)));

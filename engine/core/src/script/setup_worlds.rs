@@ -6,6 +6,7 @@ use crate::judge::explain;
 use crate::judge::views::number;
 use crate::settings::{DrawnFrom, Value, Varied, VariedKey, WorldShare};
 use rhai::{Dynamic, Map, Position};
+use std::ops::Range;
 
 /// Most entries of `worlds`.
 const MAX_WORLDS: usize = 64;
@@ -21,6 +22,7 @@ impl SetupReader<'_> {
         if let Some(map) = list.clone().try_cast::<Map>() {
             for (name, weight) in map {
                 let at = self.entry(&name);
+                self.places.insert(format!("worlds:{}", shares.len()), self.string_at(at.0));
                 let weight = number(&weight).filter(|weight| weight.fract() == 0.0);
                 let Some(weight) = weight.filter(|weight| (1.0..=MAX_WEIGHT).contains(weight)) else {
                     let message =
@@ -30,12 +32,18 @@ impl SetupReader<'_> {
                 shares.push(WorldShare { name: name.to_string(), weight: weight as u32 });
             }
         } else {
-            for name in list.into_array().unwrap_or_default() {
-                let name = self.word(name, form)?;
+            let form = "worlds([\"room\", \"hallway\"]);, or with weights worlds(#{ \"room\": 3, \"hallway\": 1 });";
+            for (number, name) in list.into_array().unwrap_or_default().into_iter().enumerate() {
+                let at = self.entry(&format!("#{number}")).0;
+                let Some(name) = name.into_string().ok().filter(|name| !name.trim().is_empty()) else {
+                    let message = "the name of a world must be a text in quotes".to_owned();
+                    return self.wrong(at, message, "no name", form);
+                };
                 if shares.iter().any(|share| share.name == name) {
                     let message = format!("the world \"{}\" is listed twice", printable(&name));
-                    return self.wrong(self.call, message, "set here", form);
+                    return self.wrong(at, message, "the second time", form);
                 }
+                self.places.insert(format!("worlds:{}", shares.len()), self.string_at(at));
                 shares.push(WorldShare { name, weight: 1 });
             }
         }
@@ -46,6 +54,13 @@ impl SetupReader<'_> {
         self.settings.worlds = shares;
         self.mark("worlds".to_owned(), self.call)?;
         self.check_worlds_alone(form)
+    }
+
+    /// The text in quotes at a position, or the word there.
+    fn string_at(&self, at: Position) -> Range<usize> {
+        let (source, from) = (&self.code.source, explain::offset(&self.code.source, at));
+        let text = source.text[from..].strip_prefix('"').and_then(|text| text.find('"'));
+        text.map_or_else(|| source.word_at(from), |length| from..from + length + 2)
     }
 
     /// `world` and `worlds` exclude each other.

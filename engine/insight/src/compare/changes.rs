@@ -1,5 +1,7 @@
 //! What was changed from one run to another: settings, actions, filters, the world, and the lines of the script.
 
+use std::collections::BTreeSet;
+
 use engine::experiment::Plan;
 use engine::settings::{SETTINGS, Settings, Value};
 use serde::Serialize;
@@ -80,12 +82,28 @@ fn settings(first: &Plan, other: &Plan) -> Vec<SettingChange> {
         .filter(|(_, before, after)| before != after)
         .map(|(name, before, after)| SettingChange { name, before, after })
         .collect();
+    for name in policies(first).chain(policies(other)).map(|(name, _)| name).collect::<BTreeSet<_>>() {
+        let of = |plan| policies(plan).find(|(own, _)| *own == name).map(|(_, text)| text);
+        let (before, after) = match (of(first), of(other)) {
+            (Some(before), Some(after)) if before == after => continue,
+            (before, after) => {
+                (before.map_or("none", |_| "as it was").to_owned(), after.map_or("none", |_| "another one").to_owned())
+            }
+        };
+        changes.push(SettingChange { name: format!("policy \"{name}\""), before, after });
+    }
     let texts = [first, other].map(|plan| plan.worlds.layouts().iter().map(|layout| &layout.source.text));
     if first.worlds.title() == other.worlds.title() && !Iterator::eq(texts[0].clone(), texts[1].clone()) {
         let (before, after) = ("as it was".to_owned(), "another text".to_owned());
         changes.push(SettingChange { name: "world file".to_owned(), before, after });
     }
     changes
+}
+
+/// The policies that a script uses or combines, each by its name with its text.
+fn policies(plan: &Plan) -> impl Iterator<Item = (&str, &str)> {
+    let used = plan.used.iter().map(|used| (used.name.as_str(), &*used.texts[0].text));
+    used.chain(plan.members.iter().map(|member| (member.name.as_str(), &*member.source.text)))
 }
 
 /// What is drawn for each attempt.

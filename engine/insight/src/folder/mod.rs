@@ -4,6 +4,7 @@ mod drawn;
 mod files;
 mod pages;
 mod pictures;
+mod removal;
 mod taken;
 mod test_folder;
 
@@ -19,6 +20,7 @@ use taken::{Claim, taken};
 
 pub use drawn::Redrawn;
 pub use files::{CURVE_FILE, DISAGREEMENTS_FILE, create_folder, curve_of, disagreements_of, write_json};
+pub use removal::remove_run;
 pub use test_folder::TestFolder;
 
 /// One seed's results.

@@ -31,16 +31,25 @@ pub(super) fn draw_curve(folder: &Path, plan: &Plan, results: &[SeedResult]) -> 
 pub(super) fn draw_seed(folder: &Path, plan: &Plan, result: &SeedResult) -> Result<()> {
     let seed = result.run.summary.seed;
     let title = format!("{} in {}, seed {seed}", plan.behaviour.name(), plan.worlds.title());
-    let tested = ("test: first 800 steps", &result.run.tested.trail);
+    let trail = &result.run.tested.trail;
+    let tested = (&*at_home(plan, "test: first 800 steps", trail), trail);
     match &result.run.learned {
         Some(learned) => {
-            let panels = [("learning: first 400 steps", &learned.early), tested];
-            draw_trails(folder, plan, &title, &panels)?;
+            let early = at_home(plan, "learning: first 400 steps", &learned.early);
+            draw_trails(folder, plan, &title, &[(&early, &learned.early), tested])?;
             draw_policy(folder, plan, learned)?;
         }
         None => draw_trails(folder, plan, &title, &[tested])?,
     }
     draw_frame(folder, plan, &result.run.tested)
+}
+
+/// The name of a panel; of several worlds, with how many of the steps were in the one that is drawn.
+pub(super) fn at_home(plan: &Plan, steps: &str, trail: &Trail) -> String {
+    if plan.worlds.further().is_empty() {
+        return steps.to_owned();
+    }
+    format!("{steps}, {} of them in {}, which is drawn", trail.steps(), plan.layout.name)
 }
 
 pub(super) fn draw_trails(folder: &Path, plan: &Plan, title: &str, panels: &[(&str, &Trail)]) -> Result<()> {
@@ -51,8 +60,9 @@ pub(super) fn draw_trails(folder: &Path, plan: &Plan, title: &str, panels: &[(&s
 pub(super) fn draw_paths(folder: &Path, plan: &Plan, results: &[SeedResult]) -> Result<()> {
     let Some(median) = median_seed(&failures(results), |_| true) else { return Ok(()) };
     let trails: Vec<&Trail> = results.iter().map(|result| &result.run.tested.trail).collect();
+    let own = if plan.worlds.further().is_empty() { String::new() } else { format!(", those in {}", plan.layout.name) };
     let title = format!(
-        "{} in {}, {} seeds: first 800 steps of the test",
+        "{} in {}, {} seeds: first 800 steps of the test{own}",
         plan.behaviour.name(),
         plan.worlds.title(),
         results.len()

@@ -65,7 +65,17 @@ fn alike(trial: &LintTrial, exploits: &Exploits) -> Option<f64> {
         let chance = (variance / count + exploit.variance / exploit.steps as f64).sqrt();
         (exploit.reward_per_400 / WINDOW_STEPS as f64 - mean).abs() <= 3.0 * chance
     };
-    (common && exploits.behaviours.iter().all(same)).then_some(mean)
+    let alike = |exploit: &Exploit| same(exploit) && fires_alike(trial, exploit);
+    (common && exploits.behaviours.iter().all(alike)).then_some(mean)
+}
+
+/// Whether every rule fires about as often in one way of driving as in the whole trial: where one does not, what the robot does
+/// counts, however rare and small that is beside what it cannot help yet.
+fn fires_alike(trial: &LintTrial, exploit: &Exploit) -> bool {
+    exploit.rules.iter().zip(&trial.rules).all(|(own, all)| {
+        let expected = all.fired as f64 * exploit.steps as f64 / trial.steps().max(1) as f64;
+        (own.fired as f64 - expected).abs() <= 3.0 * expected.sqrt() + 3.0
+    })
 }
 
 /// Where the reward begins: `fn reward`, or the first rule.

@@ -6,6 +6,7 @@ use super::{Finding, LintTrial};
 use engine::diagnostic::printable;
 use engine::experiment::Plan;
 use engine::judge::{FactId, Reach};
+use engine::script::Condition;
 
 /// Steps in which a rule must have been asked before anything is said about all of them.
 const ENOUGH: u64 = 200;
@@ -89,13 +90,33 @@ fn never(plan: &Plan, index: usize, seen: &RuleTrial, needed: u64, trial: &LintT
         return Some(Finding::warning(plan, "W-PERSISTENCE", place, message).say(label, help));
     }
     // Goals are rare before anything is learned.
-    if goal || may_be_rare(&seen.facts) {
+    if goal {
+        return out_of_sight(plan, index, seen, steps);
+    }
+    if may_be_rare(&seen.facts) {
         return None;
     }
     let label = readings(&seen.facts);
     let message = format!("{name} never fired in {steps} steps");
     let help = "check the threshold and that the world has what the rule is about";
     Some(Finding::warning(plan, "W-RULE-NEVER", span, message).say(label, help))
+}
+
+/// A goal of which something that it needs neither held nor changed in any step: there is no way towards it.
+fn out_of_sight(plan: &Plan, index: usize, seen: &RuleTrial, steps: u64) -> Option<Finding> {
+    let rule = &plan.behaviour.outline().rules[index];
+    // What a rule remembers, and stages, begin to change only on the way to a goal.
+    let measured = |fact: &FactTrial| fact.id.is_some_and(|id| !matches!(id.fact().group, "stage" | "time"));
+    let still = |fact: &FactTrial| !fact.held && fact.least == fact.greatest && measured(fact);
+    let any = matches!(rule.condition, Condition::Any(_));
+    let out = if any { !seen.facts.is_empty() && seen.facts.iter().all(still) } else { seen.facts.iter().any(still) };
+    if !out {
+        return None;
+    }
+    let never: Vec<FactTrial> = seen.facts.iter().filter(|fact| still(fact)).cloned().collect();
+    let message = format!("the goal of {} was never met in {steps} steps, nor came nearer", name(plan, index));
+    let help = "check that the world has what the goal is about, and that the robot can get to where it is measured";
+    Some(Finding::warning(plan, "W-RULE-NEVER", rule.condition_span.clone(), message).say(readings(&never), help))
 }
 
 /// Whether a condition reads accidents of the body, or nothing but the end of one's patience.

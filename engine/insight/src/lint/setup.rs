@@ -12,6 +12,12 @@ pub(super) fn check_setup(plan: &Plan, findings: &mut Vec<Finding>) {
         let message = format!("{name} is set, but nothing reads it");
         findings.push(Finding::warning(plan, "W-UNUSED", span, message).say(why, help));
     }
+    for varied in &plan.settings.randomise {
+        let Some(span) = plan.behaviour.place_of(&format!("randomise.{}", varied.key)) else { continue };
+        let Some((why, help)) = idle(plan, &varied.key) else { continue };
+        let message = format!("{} is drawn for each attempt, but nothing reads it", varied.key);
+        findings.push(Finding::warning(plan, "W-UNUSED", span, message).say(why, help));
+    }
     for unused in &plan.behaviour.outline().unused {
         let (what, name) = (unused.what, &unused.name);
         let message = match name.as_str() {

@@ -54,6 +54,8 @@ pub(super) struct RuleTrial {
     pub largest: f64,
     /// The least and the greatest value that it added; nothing if it never fired.
     pub values: Option<(f64, f64)>,
+    /// The sum of what it added.
+    pub total: f64,
     /// What its condition read.
     pub facts: Vec<FactTrial>,
     now: u64,
@@ -70,11 +72,13 @@ pub(super) struct FactTrial {
     pub unit: &'static str,
     pub least: f64,
     pub greatest: f64,
+    /// Whether the part of the condition that reads it ever held.
+    pub held: bool,
 }
 
 impl From<FactRead> for FactTrial {
     fn from(FactRead { name, id, unit, value, .. }: FactRead) -> Self {
-        Self { name, id, unit, least: value, greatest: value }
+        Self { name, id, unit, least: value, greatest: value, held: false }
     }
 }
 
@@ -138,6 +142,7 @@ impl LintTrial {
 impl RuleTrial {
     fn merge(&mut self, other: &Self) {
         self.fired += other.fired;
+        self.total += other.total;
         self.reached += other.reached;
         self.looked += other.looked;
         self.held += other.held;
@@ -164,6 +169,7 @@ impl RuleTrial {
             Some(fact) => {
                 fact.least = fact.least.min(read.least);
                 fact.greatest = fact.greatest.max(read.greatest);
+                fact.held |= read.held;
             }
             None => self.facts.push(read),
         }
@@ -171,6 +177,7 @@ impl RuleTrial {
 
     fn fire(&mut self, value: f64) {
         self.fired += 1;
+        self.total += value;
         self.range(value, value);
         if value.abs() > self.largest.abs() {
             self.largest = value;
@@ -227,7 +234,10 @@ fn look<R: Robot>(cycle: &Cycle<R>, recovered: bool, recovers: &[bool], rules: &
         forestalled |= *recovering && fired.is_some();
         // A rule that fires needs no explanation.
         if rule.fired == 0 {
-            judge.evidence(index).into_iter().flat_map(|part| part.facts).for_each(|fact| rule.read(fact.into()));
+            for part in judge.evidence(index) {
+                let held = part.holds == Some(true);
+                part.facts.into_iter().for_each(|fact| rule.read(FactTrial { held, ..fact.into() }));
+            }
         }
     }
 }

@@ -1,5 +1,8 @@
 //! Whether cheating pays: the cheapest cheat against driving on without a failure, and against the best that was learned.
 
+use std::ops::Range;
+
+use super::choice::place;
 use super::{Exploit, Exploits, Finding};
 use crate::words::rounded;
 use engine::experiment::{Plan, WINDOW_STEPS};
@@ -130,9 +133,7 @@ pub(super) fn check_exploits(plan: &Plan, exploits: &Exploits, findings: &mut Ve
     if findings.iter().any(|finding| finding.code == "W-NO-CHOICE") {
         return;
     }
-    let outline = plan.behaviour.outline();
-    let rule = outline.rules.first().map(|rule| rule.condition_span.clone());
-    let span = outline.reward.clone().or(rule).unwrap_or(0..0);
+    let span = what_pays(plan, cheat).unwrap_or_else(|| place(plan));
     let label = format!("'{name}' earns {:.1} in 400 steps, {than} {reference:.1}", cheat.reward_per_400);
     let help = match exploits.verdict {
         ExploitVerdict::Easier => {
@@ -144,6 +145,14 @@ pub(super) fn check_exploits(plan: &Plan, exploits: &Exploits, findings: &mut Ve
         }
     };
     findings.push(Finding::warning(plan, "W-EXPLOIT", span, message).say(label, help));
+}
+
+/// The rule that a cheat is paid most by, or `fn reward`; nothing if none pays.
+fn what_pays(plan: &Plan, cheat: &Exploit) -> Option<Range<usize>> {
+    let (outline, paying) =
+        (plan.behaviour.outline(), cheat.rules.iter().enumerate().filter(|(_, rule)| rule.total > 0.0));
+    let (most, _) = paying.reduce(|a, b| if b.1.total > a.1.total { b } else { a })?;
+    outline.rules.get(most).map(|rule| rule.condition_span.clone()).or_else(|| outline.reward.clone())
 }
 
 /// At most one place, and none where it is 0.

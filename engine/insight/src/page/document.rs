@@ -131,6 +131,12 @@ impl StagesView {
         }
         Ok(Some(Self { states: plan.state_map()?.states() / names.len(), names }))
     }
+
+    /// The number of the stage that a state stands in.
+    #[must_use]
+    pub fn of_state(&self, state: u32) -> usize {
+        (state as usize / self.states.max(1)).min(self.names.len().saturating_sub(1))
+    }
 }
 
 /// One use of a learned policy.

@@ -39,8 +39,30 @@ pub fn with_policies(plan: Plan) -> Result<Plan> {
 /// As [`with_policies`], and those of `packed`.
 pub fn with_policies_or(plan: Plan, packed: &dyn Fn(&Path) -> Result<Option<PolicyText>>) -> Result<Plan> {
     let policies = plan.settings.policies.iter().enumerate();
-    let texts = policies.map(|(index, policy)| find(&plan, index, &policy.path, packed)).collect::<Result<_>>()?;
-    with_policy_texts(plan, texts)
+    let texts: Vec<_> = policies.map(|(index, policy)| find(&plan, index, &policy.path, packed)).collect();
+    if texts.iter().all(Result::is_ok) {
+        return with_policy_texts(plan, texts.into_iter().collect::<Result<_>>()?);
+    }
+    // Of those that are there, what is wrong with them too.
+    let read = |index: usize, text: PolicyText| match plan.behaviour.hands_over() {
+        true => used::used(&plan, index, text).map(drop),
+        false => member(&plan, index, &text.policy).map(drop),
+    };
+    all(texts.into_iter().enumerate().map(|(index, text)| read(index, text?)))?;
+    Ok(plan)
+}
+
+/// All that was read, or all that is wrong as one error.
+pub(super) fn all<T>(results: impl Iterator<Item = Result<T>>) -> Result<Vec<T>> {
+    let (mut read, mut first): (Vec<T>, Option<Box<Diagnostic>>) = (Vec::new(), None);
+    for result in results {
+        match (result, &mut first) {
+            (Ok(one), _) => read.push(one),
+            (Err(error), None) => first = Some(error),
+            (Err(error), Some(first)) => first.others.push(*error),
+        }
+    }
+    first.map_or(Ok(read), Err)
 }
 
 /// The plan with policies from texts that are at hand: those that a stored run or a pack holds.
@@ -56,7 +78,7 @@ pub fn with_policy_texts(plan: Plan, texts: Vec<PolicyText>) -> Result<Plan> {
         return used::with_used(plan, texts);
     }
     let texts = texts.iter().enumerate();
-    let members = texts.map(|(index, text)| member(&plan, index, &text.policy)).collect::<Result<_>>()?;
+    let members = all(texts.map(|(index, text)| member(&plan, index, &text.policy)))?;
     Ok(plan.with_members(members))
 }
 

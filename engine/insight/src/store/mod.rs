@@ -12,6 +12,7 @@ mod used;
 pub use going_on::going_on_from;
 pub use log::{LOG_FILE, MAGIC, RecordedRun, log_to_bytes, read_log};
 pub use members::{PolicyText, policy_files, with_policies, with_policies_or, with_policy_texts};
+pub(crate) use parts::TAG_FILE;
 pub use parts::{RUN_FILE, SUMMARY_FILE, seed_folders};
 pub use policy_file::{POLICY_FILE, StoredPolicy, policy_from_toml, policy_to_toml};
 pub use run_file::{StoredRun, run_to_toml};

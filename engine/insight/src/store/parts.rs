@@ -28,6 +28,9 @@ pub fn seed_folders(folder: &Path) -> Vec<(u64, PathBuf)> {
     seeds
 }
 
+/// The file that holds a run's tag.
+pub(crate) const TAG_FILE: &str = "tag.txt";
+
 /// The longest part of a log that is read to find out its run, bytes: prefix and header.
 const MOST_HEADER_BYTES: u64 = 16 << 20;
 

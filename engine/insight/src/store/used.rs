@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::members::{PolicyText, wrong};
+use super::members::{PolicyText, all, wrong};
 use super::run_file::{StoredRun, uses_policies};
 use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::experiment::{Decider, Plan, UsedPolicy};
@@ -10,7 +10,7 @@ use engine::experiment::{Decider, Plan, UsedPolicy};
 /// The plan with the policies that its script uses, one text for each that it names.
 pub(super) fn with_used(plan: Plan, texts: Vec<PolicyText>) -> Result<Plan> {
     let used = texts.into_iter().enumerate().map(|(index, text)| used(&plan, index, text).map(Arc::new));
-    let used = used.collect::<Result<_>>()?;
+    let used = all(used)?;
     let plan = plan.with_used(used);
     match plan.motions_beyond_limit() {
         0 => Ok(plan),
@@ -23,7 +23,8 @@ pub(super) fn with_used(plan: Plan, texts: Vec<PolicyText>) -> Result<Plan> {
     }
 }
 
-fn used(plan: &Plan, index: usize, PolicyText { policy, run }: PolicyText) -> Result<UsedPolicy> {
+/// One policy that it uses.
+pub(super) fn used(plan: &Plan, index: usize, PolicyText { policy, run }: PolicyText) -> Result<UsedPolicy> {
     let name = plan.settings.policies[index].name.clone();
     let shown = printable(&name);
     let Some(run) = run else {

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 #[derive(Debug, Args)]
+#[command(after_help = "Exit status: 0 printed; 2 usage; 6 standard output cannot be written.")]
 pub(crate) struct ReferenceArguments {
     /// Print definitions for editors (.d.rhai) instead of the page
     #[arg(long)]
@@ -12,6 +13,9 @@ pub(crate) struct ReferenceArguments {
     /// Print the language as data for tools (JSON) instead of the page
     #[arg(long, conflicts_with = "definitions")]
     pub(crate) json: bool,
+    /// Print a TextMate grammar for the colours of an editor (JSON) instead of the page
+    #[arg(long, conflicts_with_all = ["definitions", "json"])]
+    pub(crate) grammar: bool,
 }
 
 #[derive(Debug, Args)]

@@ -4,7 +4,11 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
+/// Of all that write something to begin with.
+const NEW_STATUS: &str = "Exit status: 0 written; 2 usage; 3 there is no such thing; 6 files and disk.";
+
 #[derive(Debug, Args)]
+#[command(after_help = NEW_STATUS)]
 pub(crate) struct NewArguments {
     #[command(subcommand)]
     pub(crate) what: NewCommand,
@@ -13,6 +17,7 @@ pub(crate) struct NewArguments {
 #[derive(Debug, Subcommand)]
 pub(crate) enum NewCommand {
     /// Write a filter as a crate of its own, with the contract beside it
+    #[command(after_help = NEW_STATUS)]
     Filter {
         /// The filter's name: lower case letters, digits and _
         name: String,
@@ -23,6 +28,7 @@ pub(crate) enum NewCommand {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = NEW_STATUS)]
 pub(crate) struct WorldArguments {
     #[command(subcommand)]
     pub(crate) what: WorldCommand,
@@ -31,6 +37,7 @@ pub(crate) struct WorldArguments {
 #[derive(Debug, Subcommand)]
 pub(crate) enum WorldCommand {
     /// Write the file of a world made by rule, to look at it or to change it
+    #[command(after_help = NEW_STATUS)]
     New {
         /// The world, such as corridors:7; the families are rooms, corridors and lines
         world: String,

@@ -6,11 +6,11 @@ use clap::{Args, Subcommand};
 
 use super::FilterSources;
 
+const PACK_STATUS: &str = "Exit status: 0 done; 1 checked or replayed, but not good enough; 2 usage; 3 not a pack, or a wrong \
+                           one; 4 a limit stopped it; 5 refused for trust; 6 files and disk.";
+
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Exit status: 0 done; 1 checked or replayed, but not good enough; 2 usage; 3 not a pack, or a wrong \
-                        one; 4 a limit stopped it; 5 refused for trust; 6 files and disk."
-)]
+#[command(after_help = PACK_STATUS)]
 pub(crate) struct PackArguments {
     #[command(subcommand)]
     pub(crate) command: PackCommand,
@@ -22,30 +22,43 @@ pub(crate) struct PackArguments {
 #[derive(Debug, Subcommand)]
 pub(crate) enum PackCommand {
     /// Make a folder to start a pack from; it runs at once
+    #[command(after_help = PACK_STATUS)]
     New(PackNewArguments),
     /// Is a pack's folder ready? It loads, every file is listed, it is licensed, a few seeds learn
+    #[command(after_help = PACK_STATUS)]
     Check(FolderArguments),
     /// Learn the behaviour and make the pack: the same bytes from the same folder on every machine
+    #[command(after_help = PACK_STATUS)]
     Build(BuildArguments),
     /// Make a pair of keys to sign packs with, in the format of minisign
+    #[command(after_help = PACK_STATUS)]
     Keygen(KeygenArguments),
     /// Sign a pack: writes PACK.minisig beside it
+    #[command(after_help = PACK_STATUS)]
     Sign(SignArguments),
     /// Trust a key to sign an owner's packs, or never trust it again; without an owner, list the trusted keys
+    #[command(after_help = PACK_STATUS)]
     Trust(TrustArguments),
     /// Check a pack's digests and signature; with --replay, learn it again and compare
+    #[command(after_help = PACK_STATUS)]
     Verify(VerifyArguments),
     /// What is in a pack, who signed it, what it asks for, its figures; nothing in it is run
+    #[command(after_help = PACK_STATUS)]
     Inspect(InspectArguments),
     /// Verify a pack and put it where 'engine run NAME' finds it; pins it in engine.lock
+    #[command(after_help = PACK_STATUS)]
     Install(InstallArguments),
     /// The installed packs; with --gallery, as a page with a card for each
+    #[command(after_help = PACK_STATUS)]
     List(ListArguments),
     /// Remove an installed pack
+    #[command(after_help = PACK_STATUS)]
     Remove(RemoveArguments),
     /// Copy a pack and its signature to a folder or, built with the feature 'share', to an OCI registry
+    #[command(after_help = PACK_STATUS)]
     Push(PushArguments),
     /// Fetch a pack and its signature from a file, a folder or, with the feature 'share', https or an OCI registry
+    #[command(after_help = PACK_STATUS)]
     Pull(PullArguments),
 }
 

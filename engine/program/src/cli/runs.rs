@@ -24,9 +24,11 @@ pub(crate) struct CompareArguments {
     pub(crate) filters: FilterSources,
 }
 
+const RUNS_STATUS: &str = "Exit status: 0 done; 2 usage; 6 files and disk; 7 a folder that is no run.";
+
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true)]
-#[command(after_help = "Exit status: 0 done; 2 usage; 6 files and disk; 7 a folder that is no run.")]
+#[command(after_help = RUNS_STATUS)]
 pub(crate) struct RunsArguments {
     #[command(subcommand)]
     pub(crate) command: Option<RunsCommand>,
@@ -41,6 +43,7 @@ pub(crate) struct RunsArguments {
 #[derive(Debug, Subcommand)]
 pub(crate) enum RunsCommand {
     /// Put a word on a run, so that it is found again and kept
+    #[command(after_help = RUNS_STATUS)]
     Tag {
         /// The folder of a run, such as runs/wall/1
         run: PathBuf,
@@ -48,6 +51,7 @@ pub(crate) enum RunsCommand {
         tag: Option<String>,
     },
     /// Remove runs without a tag; without --yes, only say which
+    #[command(after_help = RUNS_STATUS)]
     Prune {
         /// Where the runs stand
         #[arg(default_value = "runs", value_name = "DIR")]

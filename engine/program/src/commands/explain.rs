@@ -278,6 +278,7 @@ fn silence(rule: &RuleReasons) -> String {
     let parts: Vec<String> =
         rule.parts.iter().filter(|part| !part.facts.is_empty()).map(|part| facts(&part.facts)).collect();
     let held = match (rule.held, rule.needed) {
+        _ if rule.spent => "'once': it has fired, and its condition has held ever since; ".to_owned(),
         (_, 0 | 1) => String::new(),
         (held, needed) => format!("held for {held} of {needed} steps; "),
     };

@@ -1,7 +1,9 @@
 //! Figures of runs and tests, for people.
 
 use engine::diagnostic::printable;
-use engine::experiment::{CombinationFigures, FromRun, MemberFigures, Plan, Spread, StartJoined, Summary, UseFigures};
+use engine::experiment::{
+    CombinationFigures, FromRun, MemberFigures, Plan, Spread, StartJoined, Summary, UseFigures, WorldFigures,
+};
 use engine::verdict::{BaseLines, Because, SuccessVerdict, TestFigures};
 use insight::verdict_words::{figures, headline, learned, spread_of_figures, tells_learning};
 
@@ -45,12 +47,32 @@ pub(super) fn print_one(console: &mut Console, plan: &Plan, summary: &Summary) -
     if !summary.starts.is_empty() {
         console.line(&format!("starts:    {}", starts(&summary.starts)))?;
     }
+    if let Some(worlds) = hardest(&summary.worlds) {
+        console.line(&format!("worlds:    {worlds}"))?;
+    }
     print_figures(console, plan, test, base_lines)
 }
 
 /// The run that learning went on from, and what was carried on.
 fn print_from(console: &mut Console, from: &FromRun) -> Printed {
     console.line(&format!("from:      {}: {}", printable(&from.run), from.carried))
+}
+
+/// Of several worlds the three in which the robot failed most.
+fn hardest(worlds: &[WorldFigures]) -> Option<String> {
+    let mut failing: Vec<&WorldFigures> = worlds.iter().filter(|of| of.failures > 0).collect();
+    failing.sort_by(|a, b| b.failures_per_1000.total_cmp(&a.failures_per_1000));
+    let one = |of: &&WorldFigures| {
+        let (name, failures) = (printable(&of.world), of.failures_per_1000);
+        format!("{name} ({failures:.1} failures in 1000 of its {} steps)", of.steps)
+    };
+    let shown = failing.iter().take(3).map(one).collect::<Vec<_>>().join(", ");
+    match (worlds.is_empty(), failing.len()) {
+        (true, _) => None,
+        (_, 0) => Some(format!("no failure in any of {}", worlds.len())),
+        (_, 1) => Some(format!("failures in one of {}: {shown}", worlds.len())),
+        (_, count) => Some(format!("failures in {count} of {}, most in {shown}", worlds.len())),
+    }
 }
 
 /// How much each policy drove that the script uses.

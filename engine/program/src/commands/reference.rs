@@ -6,6 +6,7 @@ use crate::console::{Console, ConsoleError};
 pub(crate) fn run(arguments: &ReferenceArguments, console: &mut Console) -> Result<u8, ConsoleError> {
     let text = match arguments {
         ReferenceArguments { json: true, .. } => format!("{:#}\n", engine::script::reference_json()),
+        ReferenceArguments { grammar: true, .. } => format!("{:#}\n", engine::script::grammar()),
         ReferenceArguments { definitions: true, .. } => engine::script::definitions(),
         _ => engine::script::reference(),
     };

@@ -4,7 +4,8 @@ use std::path::Path;
 use std::time::{Duration, SystemTime};
 
 use engine::diagnostic::printable;
-use insight::shelf::{ShelvedRun, remove_run, runs_under, tag_run};
+use insight::folder::remove_run;
+use insight::shelf::{ShelvedRun, runs_under, tag_run};
 
 use crate::cli::{RunsArguments, RunsCommand};
 use crate::console::{Console, ConsoleError};
@@ -35,7 +36,12 @@ pub(crate) fn run(arguments: &RunsArguments, console: &mut Console) -> Result<u8
             list(console, &going)?;
             let bytes: u64 = going.iter().map(|run| run.bytes).sum();
             if *yes {
-                going.iter().try_for_each(|run| remove_run(&run.folder))?;
+                for run in &going {
+                    let kept = remove_run(&run.folder)?;
+                    kept.iter().try_for_each(|path| {
+                        console.line(&format!("kept:      {}, which the engine did not write", path.display()))
+                    })?;
+                }
                 console.line(&format!("removed {} runs, {}", going.len(), size(bytes)))?;
             } else {
                 console.line(&format!(

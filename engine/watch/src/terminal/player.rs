@@ -31,6 +31,8 @@ pub struct Moment {
     pub ranges_m: Vec<f32>,
     /// Why it was rewarded.
     pub reasons: StepReasons,
+    /// What the script's measures came to, in their order.
+    pub measures: Vec<f64>,
 }
 
 /// An answer with its question.
@@ -160,5 +162,8 @@ fn moment(
         }
     }
     let reasons = StepReasons::of_next(playback).ok().flatten();
-    Some(reasons.map(|reasons| Moment { ranges_m: playback.cycle().observation().scan.ranges_m.clone(), reasons }))
+    Some(reasons.map(|reasons| {
+        let cycle = playback.cycle();
+        Moment { ranges_m: cycle.observation().scan.ranges_m.clone(), reasons, measures: cycle.measures().collect() }
+    }))
 }

@@ -1,4 +1,4 @@
-//! The rules: what each adds, how often it fired, and when; those that fire in the shown step are lit.
+//! The rules: what each adds, how often it fired, and when; those that fire in the shown step are lit. Below them the stages.
 
 use ratatui_core::buffer::Buffer;
 use ratatui_core::layout::Rect;
@@ -10,6 +10,7 @@ use super::lines::{heading, write, write_all};
 use super::story::part;
 use super::view::View;
 use super::words::{columns, fit, signed, total};
+use insight::page::Document;
 use insight::words::whole;
 
 /// The most rules in the small panel.
@@ -17,7 +18,8 @@ const MOST: usize = 8;
 
 /// Rows that the small panel takes.
 pub(super) fn height(view: &View, body: Rect) -> u16 {
-    let rules = view.document().map_or(0, |document| document.rules.len()).min(MOST) as u16;
+    let stages = |document: &Document| document.stages.as_ref().map_or(0, |stages| stages.names.len());
+    let rules = view.document().map_or(0, |document| document.rules.len() + stages(document)).min(MOST) as u16;
     (1 + rules.max(1)).min(body.height / 3)
 }
 
@@ -39,7 +41,7 @@ pub(super) fn draw_rules(view: &View, area: Rect, buffer: &mut Buffer) {
     let parts: Vec<Vec<u32>> = (0..document.rules.len()).map(|rule| view.story.parts(rule, rest)).collect();
     let most = parts.iter().flatten().copied().max().unwrap_or(0).max(1);
     let now = part(view.step, view.story.kept, rest);
-    let lines: Vec<Line<'_>> = document
+    let mut lines: Vec<Line<'_>> = document
         .rules
         .iter()
         .enumerate()
@@ -57,34 +59,79 @@ pub(super) fn draw_rules(view: &View, area: Rect, buffer: &mut Buffer) {
                 Span::styled(name, name_style),
                 Span::styled(numbers, if fired { TerminalInk::strong() } else { Style::new() }),
             ];
-            spans.extend(over_time(&parts[rule], most, now, style, known.value.is_none(), view.ink.fine));
+            let over_time = Bars { now, style, fine: view.ink.fine };
+            spans.extend(match known.value {
+                Some(_) => over_time.counts(&parts[rule], most),
+                None => over_time.sums(&view.story.sums(rule, rest), view.ink.bad()),
+            });
             Line::from(spans)
         })
         .collect();
+    lines.extend(stages(view, document, name_width, rest));
     write_all(&lines, view.scroll, inner, buffer);
 }
 
-/// How often a rule fired, from the first step to the last; the shown step stands out.
-fn over_time(parts: &[u32], most: u32, now: usize, style: Style, varies: bool, fine: bool) -> Vec<Span<'static>> {
-    let levels = if fine {
-        ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█']
-    } else {
-        ['▄', '▄', '▄', '▄', '█', '█', '█', '█']
+/// The stages: in how many steps the robot was in each, and when.
+fn stages<'a>(view: &View, document: &'a Document, name_width: usize, rest: usize) -> Vec<Line<'a>> {
+    let (Some(stages), Some(record)) = (&document.stages, view.record()) else { return Vec::new() };
+    let (present, now) = (stages.of_state(record.state), part(view.step, view.story.kept, rest));
+    let line = |(stage, name): (usize, &'a String)| {
+        let (parts, is_present) = (view.story.steps_in(stage, rest.max(1)), stage == present);
+        let name = fit(name, name_width);
+        let pad = " ".repeat(name_width - columns(&name));
+        let steps = whole(parts.iter().map(|steps| u64::from(*steps)).sum());
+        let name_style = if is_present { TerminalInk::strong().add_modifier(Modifier::REVERSED) } else { Style::new() };
+        let mut spans = vec![
+            Span::styled("◆ ", view.ink.accent()),
+            Span::styled(name, name_style),
+            Span::raw(format!("{pad}{:>12}{steps:>8}{:>9}  ", "in stage", "steps")),
+        ];
+        let all = view.story.kept.div_ceil(rest.max(1)).max(1) as u32;
+        let bars = Bars { now, style: view.ink.accent(), fine: view.ink.fine };
+        spans.extend(bars.counts(&parts[..rest.min(parts.len())], all));
+        Line::from(spans)
     };
-    let glyph = |count: u32| match count {
-        0 if varies => '┈',
-        0 => '·',
-        // A single firing can be seen beside a hundred: heights go with the square root.
-        _ => levels[((f64::from(count) / f64::from(most)).sqrt() * 8.0).ceil().clamp(1.0, 8.0) as usize - 1],
-    };
-    let spans = parts.iter().enumerate().map(|(index, count)| {
-        let (glyph, style) = match (index == now, *count) {
-            (true, 0) => ('│', TerminalInk::strong()),
-            (true, _) => (glyph(*count), style.add_modifier(Modifier::REVERSED)),
-            (false, 0) => (glyph(0), TerminalInk::quiet()),
-            (false, _) => (glyph(*count), style),
+    stages.names.iter().enumerate().map(line).collect()
+}
+
+/// Bars from the first step to the last; the part with the shown step stands out.
+struct Bars {
+    now: usize,
+    style: Style,
+    fine: bool,
+}
+
+impl Bars {
+    /// How often something was in each part, beside the most of anything.
+    fn counts(&self, parts: &[u32], most: u32) -> Vec<Span<'static>> {
+        let bars = parts.iter().map(|count| (f64::from(*count) / f64::from(most.max(1)), self.style));
+        self.spans(bars, '·')
+    }
+
+    /// What was added in each part, beside the most in any; what took away is in the style `bad`.
+    fn sums(&self, parts: &[f64], bad: Style) -> Vec<Span<'static>> {
+        let most = parts.iter().fold(0.0, |most, sum| sum.abs().max(most)).max(f64::MIN_POSITIVE);
+        let bars = parts.iter().map(|sum| (sum.abs() / most, if *sum < 0.0 { bad } else { self.style }));
+        self.spans(bars, '┈')
+    }
+
+    fn spans(&self, bars: impl Iterator<Item = (f64, Style)>, none: char) -> Vec<Span<'static>> {
+        let levels = if self.fine {
+            ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█']
+        } else {
+            ['▄', '▄', '▄', '▄', '█', '█', '█', '█']
         };
-        Span::styled(glyph.to_string(), style)
-    });
-    spans.collect()
+        // A single firing can be seen beside a hundred: heights go with the square root.
+        let level = |share: f64| levels[(share.sqrt() * 8.0).ceil().clamp(1.0, 8.0) as usize - 1];
+        let spans = bars.enumerate().map(|(index, (share, style))| {
+            let (glyph, style) = match (index == self.now, share > 0.0) {
+                (true, false) => ('│', TerminalInk::strong()),
+                (true, true) => (level(share), style.add_modifier(Modifier::REVERSED)),
+                (false, false) => (none, TerminalInk::quiet()),
+                (false, true) => (level(share), style),
+            };
+            Span::styled(glyph.to_string(), style)
+        });
+        spans.collect()
+    }
 }

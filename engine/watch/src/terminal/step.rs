@@ -58,6 +58,15 @@ fn lines(view: &View, width: usize) -> Vec<Line<'static>> {
         entry("events", events(&record)),
         entry("reward", signed(record.reward)),
     ];
+    if let Some(stages) = &document.stages {
+        let name = |state: u32| stages.names.get(stages.of_state(state)).map_or("", String::as_str);
+        let (from, to) = (name(record.state), name(record.next_state));
+        lines.push(entry("stage", if from == to { from.to_owned() } else { format!("{from} → {to}") }));
+    }
+    let measures = view.moment().map_or(&[][..], |moment| &moment.measures);
+    for (name, value) in document.measures.iter().zip(measures) {
+        lines.push(entry("measure", format!("{name} {}", typeset(*value))));
+    }
     for (rule, known) in document.rules.iter().enumerate() {
         let fired = view.fired(rule);
         // Of a reward that was swapped later, the step's own rule of this name.
@@ -100,6 +109,7 @@ fn said(why: &RuleReasons, fired: bool) -> String {
     let held = if why.needed > 1 { format!(", held {} of {} steps", why.held, why.needed) } else { String::new() };
     match why.added {
         Some(added) if fired => signed(added),
+        _ if why.spent => "silent by 'once': it has fired".to_owned(),
         _ if !why.asked => "not asked: an earlier rule ended the step".to_owned(),
         _ => format!("silent{held}"),
     }

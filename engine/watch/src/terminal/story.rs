@@ -24,8 +24,12 @@ pub(super) struct Story {
     pub fired: Vec<u64>,
     /// By rule: the sum of what it added.
     pub totals: Vec<f64>,
-    /// Firings in their order; `fn reward` speaks at nearly every step and leaves none.
+    /// Firings in their order; of a rule whose value varies only if it does not fire in half of the steps or more.
     pub marks: Vec<StoryMark>,
+    /// Firings of the rules whose value varies, `fn reward` among them: step, rule, what it added.
+    varied: Vec<(usize, usize, f64)>,
+    /// By step: the stage in which it was chosen; empty of a script without stages.
+    stages: Vec<u8>,
     /// By leg of learning: its first step, and where each of its rules stands among the plan's own.
     legs: Vec<(usize, Vec<Option<usize>>)>,
 }
@@ -41,6 +45,8 @@ impl Story {
             fired: vec![0; rules],
             totals: vec![0.0; rules],
             marks: Vec::new(),
+            varied: Vec::new(),
+            stages: Vec::new(),
             legs: legs(plan, learning),
         };
         for (step, record) in ledger.records().enumerate() {
@@ -48,11 +54,16 @@ impl Story {
             for (rule, value) in fired {
                 story.fired[rule] += 1;
                 story.totals[rule] += value;
-                if document.rules[rule].value.is_some() {
-                    story.marks.push(StoryMark { step, rule, place_m: (record.pose.x_m, record.pose.y_m) });
+                story.marks.push(StoryMark { step, rule, place_m: (record.pose.x_m, record.pose.y_m) });
+                if document.rules[rule].value.is_none() {
+                    story.varied.push((step, rule, value));
                 }
             }
+            story.stages.extend(document.stages.as_ref().map(|stages| stages.of_state(record.state) as u8));
         }
+        let covers = |rule: usize| document.rules[rule].value.is_none() && 2 * story.fired[rule] >= story.kept as u64;
+        let covering: Vec<bool> = (0..rules).map(covers).collect();
+        story.marks.retain(|mark| !covering[mark.rule]);
         let tally = seed.learned.as_ref().map(|learned| &learned.tally).filter(|tally| tally.fired.len() >= rules);
         if let Some(tally) = tally.filter(|_| learning) {
             // Rules that only earlier legs had come after the plan's own.
@@ -83,6 +94,30 @@ impl Story {
         let mut counts = vec![0; parts];
         for mark in self.marks.iter().filter(|mark| mark.rule == rule) {
             if let Some(count) = counts.get_mut(part(mark.step, self.kept, parts)) {
+                *count += 1;
+            }
+        }
+        counts
+    }
+}
+
+impl Story {
+    /// What a rule whose value varies added in each of so many equal parts of the phase.
+    pub(super) fn sums(&self, rule: usize, parts: usize) -> Vec<f64> {
+        let mut sums = vec![0.0; parts];
+        for (step, _, value) in self.varied.iter().filter(|(_, of, _)| *of == rule) {
+            if let Some(sum) = sums.get_mut(part(*step, self.kept, parts)) {
+                *sum += value;
+            }
+        }
+        sums
+    }
+
+    /// In how many steps of each of so many equal parts of the phase the robot was in a stage.
+    pub(super) fn steps_in(&self, stage: usize, parts: usize) -> Vec<u32> {
+        let mut counts = vec![0; parts];
+        for (step, _) in self.stages.iter().enumerate().filter(|(_, now)| usize::from(**now) == stage) {
+            if let Some(count) = counts.get_mut(part(step, self.kept, parts)) {
                 *count += 1;
             }
         }
@@ -124,5 +159,14 @@ mod tests {
         assert_eq!([story.mark_beside(3, true), story.mark_beside(60, false)], [Some(60), Some(3)]);
         assert_eq!([story.mark_beside(60, true), story.mark_beside(3, false)], [None, None]);
         assert_eq!(story.parts(0, 2), [1, 1]);
+    }
+
+    #[test]
+    fn stages_and_values_that_vary_are_counted_by_parts() {
+        let varied = vec![(0, 1, 0.5), (1, 1, -0.25), (3, 1, 2.0), (3, 0, 9.0)];
+        let story = Story { kept: 4, varied, stages: vec![0, 1, 1, 0], ..Story::default() };
+        assert_eq!(story.sums(1, 2), [0.25, 2.0]);
+        assert_eq!([story.steps_in(0, 2), story.steps_in(1, 2)], [[1, 1], [1, 1]]);
+        assert_eq!(story.steps_in(1, 4), [0, 1, 1, 0]);
     }
 }

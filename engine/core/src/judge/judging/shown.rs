@@ -37,6 +37,12 @@ impl Judge {
         rule.is_some_and(|rule| self.present.condition(rule).unwrap_or(false))
     }
 
+    /// Whether a rule that fires once is silent because its condition has held ever since it fired.
+    #[must_use]
+    pub fn is_spent(&self, rule: usize) -> bool {
+        self.spent.get(rule).copied().unwrap_or(false)
+    }
+
     /// For how many steps a rule's condition has held since it last fired, and how many it needs.
     #[must_use]
     pub fn held(&self, rule: usize) -> (u32, u32) {

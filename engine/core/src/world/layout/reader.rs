@@ -112,10 +112,15 @@ fn is_double(error: &toml::de::Error) -> bool {
 
 fn syntax(source: &SourceText, error: &toml::de::Error) -> Diagnostic {
     let span = error.span().unwrap_or(0..0);
+    let word = source.text.get(span.clone()).unwrap_or_default().trim();
     let (message, help) = if error.message().contains("recursion limit") {
         ("the file is nested too deeply", "a world needs three levels: a list of points, a point, a number")
     } else if is_double(error) {
         ("a key is there twice", "keep one of the two; tables that may repeat are written [[name]]")
+    } else if ["yes", "on", "True", "TRUE"].contains(&word) {
+        ("this is not TOML", "write true")
+    } else if ["no", "off", "False", "FALSE"].contains(&word) {
+        ("this is not TOML", "write false")
     } else {
         ("this is not TOML", "values stand after '=', text in quotes, lists in [ ]; see worlds/README.md")
     };

@@ -37,7 +37,7 @@ function ruleMark(pen, rule, x, y, size) {
   pen.restore();
 }
 
-/** The same among words. */
+/** A shape beside a colour, to stand among words. */
 function chip(rule) {
   const path = svg('path', { d: SHAPES[shapeOf(rule)] });
   path.style.fill = ruleInk(rule);

@@ -238,7 +238,7 @@ function ring([x, y, radius]) {
   return turns.map((turn) => [x + radius * Math.cos(turn), y + radius * Math.sin(turn)]);
 }
 
-/** The same of something that drives by itself: recovery may have put it back to where it begins. */
+/** Where something that drives by itself was between two steps; recovery may have put it back to where it begins. */
 function moverPose(track, number, index, share, unit) {
   const apart = index > 0 && (track.flags[index - 1] & MOVES);
   return mixed(track, track.movers[number], index, apart ? 1 : share, unit);
