@@ -49,8 +49,9 @@ impl CoDrivers {
         self.drivers.iter().any(|driver| driver.judge.reads_ground())
     }
 
-    pub(super) fn like_grey(&self) -> bool {
-        self.drivers.iter().flat_map(|driver| &driver.eyes.chains).all(|chain| chain.likes() == Format::Grey)
+    /// What their filters read.
+    pub(super) fn like(&self) -> impl Iterator<Item = Format> {
+        self.drivers.iter().flat_map(|driver| driver.eyes.likes())
     }
 
     /// Looks at the first observation of the run, by which scripts calibrate.
@@ -141,7 +142,7 @@ impl CoDriver {
     }
 
     fn calibrate(&mut self, observation: &Observation) -> Result<()> {
-        self.eyes.look(&observation.image)?;
+        self.eyes.look(observation)?;
         self.tell(observation, NO_ACTION);
         self.judge.calibrate()
     }
@@ -150,7 +151,7 @@ impl CoDriver {
     fn begin(&mut self, observation: &Observation) -> Result<()> {
         (self.done, self.steps, self.last) = (0, 0, None);
         self.eyes.forget();
-        self.eyes.look(&observation.image)?;
+        self.eyes.look(observation)?;
         self.rest(observation)
     }
 
@@ -162,9 +163,9 @@ impl CoDriver {
             return Ok(());
         }
         (self.done, self.steps) = (0, self.steps + 1);
-        self.eyes.look(&observation.image)?;
+        self.eyes.look(observation)?;
         if !self.judge.remembers() {
-            self.state = self.eyes.state(&observation.image, self.judge.digits());
+            self.state = self.eyes.state(observation, self.judge.digits());
             return Ok(());
         }
         self.tell(observation, self.last.unwrap_or(NO_ACTION));
@@ -174,7 +175,7 @@ impl CoDriver {
             self.steps = 0;
             return self.rest(observation);
         }
-        self.state = self.eyes.state(&observation.image, self.judge.digits());
+        self.state = self.eyes.state(observation, self.judge.digits());
         Ok(())
     }
 
@@ -201,7 +202,7 @@ impl CoDriver {
             self.tell(observation, NO_ACTION);
             self.judge.take()?;
         }
-        self.state = self.eyes.state(&observation.image, self.judge.digits());
+        self.state = self.eyes.state(observation, self.judge.digits());
         Ok(())
     }
 

@@ -9,6 +9,7 @@ use crate::judge::{Judge, Judgement, Leave, NO_ACTION};
 use crate::outcome::Ending;
 use crate::robot::{Ended, Robot};
 use crate::sensors::observation::{Image, Observation};
+use crate::settings::Settings;
 use crate::state::StateMap;
 
 use super::co_driver::CoDrivers;
@@ -74,19 +75,14 @@ impl<R: Robot> Cycle<R> {
         own.look_for(judge.looks());
         others.insert(0, own);
         let co_drivers = CoDrivers::new(plan)?;
-        let grey = others.iter().flat_map(|eyes| &eyes.chains).all(|chain| chain.likes() == Format::Grey);
-        let format = match grey && co_drivers.like_grey() {
-            true => Format::Grey,
-            false => Format::Rgb,
-        };
-        let (width_px, height_px) = (settings.camera.width_px as usize, settings.camera.height_px as usize);
+        let likes: Vec<Format> = others.iter().flat_map(Eyes::likes).chain(co_drivers.like()).collect();
         let mut cycle = Self {
             robot,
             states: vec![0; others.len()],
             eyes: others,
             judge,
             actions: plan.motions(),
-            observation: Observation::asking_for(format, width_px, height_px, settings.laser.beams as usize),
+            observation: asking_for(settings, &likes),
             steps: 0,
             since_recovery: 0,
             potential: 0.0,
@@ -125,7 +121,7 @@ impl<R: Robot> Cycle<R> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn ask_for(&mut self, format: Format) {
-        let Image { width_px, height_px, .. } = self.observation.image;
+        let Image { width_px, height_px, .. } = *self.observation.sight();
         self.observation.image = Image::of(format, width_px, height_px);
     }
 
@@ -183,7 +179,7 @@ impl<R: Robot> Cycle<R> {
     /// The states of what was looked at last.
     fn compose(&mut self) {
         for (eyes, state) in self.eyes.iter_mut().zip(&mut self.states) {
-            *state = eyes.state(&self.observation.image, self.judge.digits());
+            *state = eyes.state(&self.observation, self.judge.digits());
         }
     }
 
@@ -323,7 +319,7 @@ impl<R: Robot> Cycle<R> {
     fn perceive(&mut self) -> Result<()> {
         self.robot.observe(&mut self.observation)?;
         for eyes in &mut self.eyes {
-            eyes.look(&self.observation.image)?;
+            eyes.look(&self.observation)?;
         }
         self.compose();
         Ok(())
@@ -334,6 +330,16 @@ impl<R: Robot> Cycle<R> {
         let told = StepTold { action, twist, step, since_recovery: self.since_recovery, state: self.states[0] };
         tell(&mut self.judge, &mut self.eyes[0], &self.observation, self.laser, told);
     }
+}
+
+/// An observation of the images that filters like: grey if that is all that they look at, depth if one does.
+fn asking_for(settings: &Settings, likes: &[Format]) -> Observation {
+    let (width_px, height_px) = (settings.camera.width_px as usize, settings.camera.height_px as usize);
+    let (beams, mut in_light) = (settings.laser.beams as usize, likes.iter().filter(|format| **format != Format::Depth));
+    let (depth, alone) = (likes.contains(&Format::Depth), in_light.clone().next().is_none());
+    let format = if in_light.all(|format| *format == Format::Grey) { Format::Grey } else { Format::Rgb };
+    let observation = Observation::asking_for(format, width_px, height_px, beams);
+    if depth { observation.with_depth(alone) } else { observation }
 }
 
 fn at_step(mut error: Box<Diagnostic>, index: u64) -> Box<Diagnostic> {

@@ -5,10 +5,10 @@ use crate::diagnostic::Result;
 use crate::filter::Chain;
 use crate::judge::{LineFacts, Look, PatchFacts, ViewFacts};
 use crate::sensors::CameraRays;
-use crate::sensors::observation::Image;
+use crate::sensors::observation::Observation;
 use crate::settings::{CameraSettings, Settings, UNNAMED_VIEW, ViewSettings};
 use crate::state::{Grid, Patch, PatchFinder, Percept, StateMap, floor_line};
-use filter_api::Descriptor;
+use filter_api::{Descriptor, Format};
 
 /// What one filter made of an image.
 #[derive(Debug, Clone, Copy)]
@@ -81,14 +81,20 @@ impl Eyes {
         }
     }
 
-    /// Looks at an image.
+    /// What the chains read.
+    pub(super) fn likes(&self) -> impl Iterator<Item = Format> {
+        self.chains.iter().map(Chain::likes)
+    }
+
+    /// Looks at what the robot observed.
     ///
     /// # Errors
     /// If a filter fails.
-    pub(super) fn look(&mut self, image: &Image) -> Result<()> {
+    pub(super) fn look(&mut self, observation: &Observation) -> Result<()> {
         for (index, grid) in self.grids.iter_mut().enumerate() {
             let (before, rest) = self.chains.split_at_mut(index);
             let Some(chain) = rest.first_mut() else { break };
+            let image = observation.read_as(chain.likes());
             let mask = match self.alike[index].and_then(|(other, shared)| Some((before.get(other)?, shared))) {
                 Some((other, shared)) => chain.apply_after(image, other, shared)?,
                 None => chain.apply(image)?,
@@ -104,7 +110,8 @@ impl Eyes {
     }
 
     /// The state of the image that was looked at last, with the other parts of a state.
-    pub(super) fn state(&mut self, image: &Image, digits: &[usize]) -> usize {
+    pub(super) fn state(&mut self, observation: &Observation, digits: &[usize]) -> usize {
+        let image = observation.read_as(self.chains[0].likes());
         let (mask, grid) = (self.chains[0].mask(), &self.grids[0]);
         self.map.encode(Percept { image, mask, grid, grids: &self.grids, digits })
     }

@@ -17,7 +17,8 @@ use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
 
 /// The filters that are linked in, by name; the engine's own `where` comes after them.
 pub const LINKED_IN: &[Plugin] =
-    &[blur::PLUGIN, colour::PLUGIN, floor::PLUGIN, horizon::PLUGIN, scharr::PLUGIN, sobel::PLUGIN, threshold::PLUGIN];
+    &[blur::PLUGIN, chroma::PLUGIN, colour::PLUGIN, floor::PLUGIN, horizon::PLUGIN, relief::PLUGIN, scharr::PLUGIN,
+      sobel::PLUGIN, threshold::PLUGIN];
 
 /// Where filters come from, besides the program itself.
 #[derive(Debug, Clone, Default)]
@@ -210,7 +211,7 @@ mod tests {
     fn a_misspelt_name_is_answered_with_the_nearest() {
         let help = |name: &str| Catalogue::linked_in().find(name).err().unwrap().help.unwrap();
         assert_eq!(help("sobol"), "did you mean \"sobel\"?");
-        assert_eq!(help("x"), "there are: blur, colour, floor, horizon, scharr, sobel, threshold, where");
+        assert_eq!(help("x"), "there are: blur, chroma, colour, floor, horizon, relief, scharr, sobel, threshold, where");
     }
 
     #[test]

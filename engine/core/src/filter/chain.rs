@@ -25,7 +25,7 @@ pub struct Chain {
 
 pub(super) struct Stage {
     descriptor: &'static Descriptor,
-    filter: Box<dyn Running>,
+    pub(super) filter: Box<dyn Running>,
     pub(super) output: Vec<u8>,
 }
 
@@ -67,11 +67,11 @@ impl Chain {
             return Err(fault);
         }
         let mut stages: Vec<Stage> = Vec::with_capacity(settings.len());
-        let mut format = Format::Rgb;
+        let mut format = first_reads(settings, catalogue);
         for (index, filter) in settings.iter().enumerate() {
             let at_stage = |error| ChainError { stage: index, parameter: None, within: None, error };
             let entry = catalogue.find(&filter.name).map_err(at_stage)?;
-            let descriptor = entry.descriptor;
+            let descriptor = descriptor_of(&entry, filter);
             let (values, _) = values(index, filter, descriptor.parameters);
             let filter = match (entry.by_condition, &filter.condition) {
                 (true, Some(text)) => condition::create(text).map_err(|wrong| in_condition(index, wrong))?,
@@ -89,10 +89,10 @@ impl Chain {
         let mut faults = Vec::new();
         let mut before: Vec<&'static Descriptor> = Vec::with_capacity(settings.len());
         // What comes out of the stage before; unknown behind an unknown filter.
-        let mut format = Some(Format::Rgb);
+        let mut format = Some(first_reads(settings, catalogue));
         for (index, filter) in settings.iter().enumerate() {
             let (descriptor, by_condition) = match catalogue.find(&filter.name) {
-                Ok(entry) => (entry.descriptor, entry.by_condition),
+                Ok(entry) => (descriptor_of(&entry, filter), entry.by_condition),
                 Err(error) => {
                     faults.push(ChainError { stage: index, parameter: None, within: None, error });
                     format = None;
@@ -165,6 +165,23 @@ impl Chain {
     /// What each stage made of the last image, in order: the filter's descriptor and its pixels.
     pub fn stages(&self) -> impl Iterator<Item = (&'static Descriptor, &[u8])> {
         self.stages.iter().map(|stage| (stage.descriptor, stage.output.as_slice()))
+    }
+}
+
+/// What a chain begins with: depth if that is what its first filter reads, else colour.
+fn first_reads(settings: &[FilterSettings], catalogue: &Catalogue) -> Format {
+    let first = settings.first().and_then(|filter| Some(descriptor_of(&*catalogue.find(&filter.name).ok()?, filter)));
+    match first {
+        Some(descriptor) if descriptor.reads.first() == Some(&Format::Depth) => Format::Depth,
+        _ => Format::Rgb,
+    }
+}
+
+/// What a filter says of itself, as it is set.
+fn descriptor_of(entry: &Entry, filter: &FilterSettings) -> &'static Descriptor {
+    match &filter.condition {
+        Some(text) if entry.by_condition && condition::looks_at_depth(text) => &condition::OF_DEPTH,
+        _ => entry.descriptor,
     }
 }
 
@@ -270,6 +287,7 @@ fn name(format: Format) -> &'static str {
         Format::Rgb => "colour",
         Format::Grey => "grey",
         Format::Mask => "a mask",
+        Format::Depth => "depth",
     }
 }
 

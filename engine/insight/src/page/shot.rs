@@ -6,7 +6,6 @@ use serde::Serialize;
 use super::picture::data_address;
 use engine::diagnostic::Result;
 use engine::experiment::{Ledger, Phase, Plan, Playback, SeenView, Snapshot, StepReasons};
-use filter_api::Format;
 
 /// One moment.
 #[derive(Debug, Clone, Serialize)]
@@ -86,7 +85,7 @@ impl ShotMaker<'_> {
         let cycle = playback.cycle();
         let Snapshot { image, views, state } = Snapshot::of(cycle);
         let size_px = (image.width_px, image.height_px);
-        let camera = data_address(&image.pixels, size_px, Format::Rgb)?;
+        let camera = data_address(&image.pixels, size_px, image.format)?;
         let mut stages = vec![StagePicture { name: "camera".to_owned(), picture: camera }];
         for stage in cycle.stages() {
             let picture = data_address(stage.pixels, size_px, stage.filter.writes)?;
