@@ -120,9 +120,13 @@ fn the_engine_reads_a_module_where_the_header_puts_its_fields() {
         claims.offset(of, field, *offset);
         assert!(layout.contains(words), "layout.rs reads {field} of {of} elsewhere");
     }
-    for (constant, of, bytes) in
-        [("PLUGIN", "filter_plugin", 96), ("PARAMETER", "filter_parameter", 56), ("FRAME", "filter_frame", 20), ("MOUNT", "filter_mount", 48), ("MOVED", "filter_moved", 24)]
-    {
+    for (constant, of, bytes) in [
+        ("PLUGIN", "filter_plugin", 96),
+        ("PARAMETER", "filter_parameter", 56),
+        ("FRAME", "filter_frame", 20),
+        ("MOUNT", "filter_mount", 48),
+        ("MOVED", "filter_moved", 24),
+    ] {
         claims.size(of, bytes);
         assert!(layout.contains(&format!("const {constant}_BYTES: u32 = {bytes};")), "{constant}_BYTES");
     }

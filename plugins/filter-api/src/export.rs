@@ -65,11 +65,7 @@ macro_rules! export {
 
             #[cfg(target_family = "wasm")]
             #[export_name = "engine_filter_mount"]
-            pub unsafe extern "C" fn mount(
-                instance: *mut c_void,
-                mount: *const RawMount,
-                message: *mut c_char,
-            ) -> i32 {
+            pub unsafe extern "C" fn mount(instance: *mut c_void, mount: *const RawMount, message: *mut c_char) -> i32 {
                 $crate::export::mount(instance, mount, message)
             }
 
@@ -161,14 +157,7 @@ pub const fn plugin(plugin: &Plugin, parameters: *const RawParameter, create: Ra
         process: Some(process),
         destroy: Some(destroy),
     };
-    RawPlugin {
-        first,
-        mount: Some(mount),
-        moved: Some(moved),
-        keeps: Some(keeps),
-        save: Some(save),
-        load: Some(load),
-    }
+    RawPlugin { first, mount: Some(mount), moved: Some(moved), keeps: Some(keeps), save: Some(save), load: Some(load) }
 }
 
 /// Whether grey stands first, and more than it: the order in which a filter likes its formats.

@@ -103,6 +103,11 @@ pub trait Filter: Send {
         let _ = kept;
     }
 
+    /// What it keeps, in words for a person: a sentence, or nothing. The C contract has no words.
+    fn words(&self) -> String {
+        String::new()
+    }
+
     /// Goes on as if it had seen and heard all that the filter had that saved this, and nothing else.
     ///
     /// # Errors

@@ -99,6 +99,20 @@ impl FloorMemory {
         }
     }
 
+    /// The greys that are floor: first, last, and the share of the model that has them, in percent.
+    fn greys(&self) -> Vec<(usize, usize, u64)> {
+        let mut greys: Vec<(usize, usize, u64)> = Vec::new();
+        for grey in (0..256).filter(|grey| self.foreign[*grey] == 0) {
+            let share = u64::from(self.model[grey]);
+            match greys.last_mut() {
+                Some((_, last, sum)) if *last + 1 == grey => (*last, *sum) = (grey, *sum + share),
+                _ => greys.push((grey, grey, share)),
+            }
+        }
+        let total = u64::from(self.total).max(1);
+        greys.into_iter().map(|(first, last, sum)| (first, last, (100 * sum + total / 2) / total)).collect()
+    }
+
     /// Takes a strip in that is seen now; learns those that were driven over since.
     fn take(&mut self, shares: [u16; 256]) {
         if self.jumped {
@@ -172,6 +186,14 @@ impl Filter for FloorMemory {
         }
     }
 
+    fn words(&self) -> String {
+        if self.total == 0 {
+            return "no floor is known yet".to_owned();
+        }
+        let greys = self.greys().into_iter().map(|(first, last, percent)| format!("{first} to {last} ({percent} %)"));
+        format!("greys of the floor driven over: {}", greys.collect::<Vec<_>>().join(", "))
+    }
+
     fn load(&mut self, kept: &[u8]) -> Result<(), FilterError> {
         let wrong = || FilterError("this is not what floor keeps".to_owned());
         if kept.len() != self.keeps() {
@@ -240,8 +262,9 @@ mod tests {
         robot.sees(0.0, true, 100, 100);
         assert_eq!(robot.sees(0.1, false, 100, 50), [0, 255]);
         assert_eq!(robot.sees(0.39, false, 50, 100), [255, 0]);
-        // One strip of the shade beside two of the light: a third of the model.
+        // One strip of the shade beside one of the light, on which the robot was put, and one that it drove over: a third.
         assert_eq!(robot.sees(0.01, false, 50, 100), [0, 0]);
+        assert_eq!(robot.0.words(), "greys of the floor driven over: 44 to 56 (33 %), 94 to 106 (67 %)");
     }
 
     #[test]

@@ -123,7 +123,8 @@ impl Filter for Relief {
         if input.format() != Format::Depth {
             return Err(FilterError("relief reads depth frames".to_owned()));
         }
-        let mount = self.mount.ok_or_else(|| FilterError("relief was not told how the camera is mounted".to_owned()))?;
+        let mount =
+            self.mount.ok_or_else(|| FilterError("relief was not told how the camera is mounted".to_owned()))?;
         if input.width_px() == 0 || input.height_px() == 0 {
             return Ok(());
         }

@@ -4,6 +4,7 @@
 //! Its rules are judged for the stages that they lead to, not for their values; where they end an attempt, it begins again.
 //! Nothing of it is worked out while it does not drive.
 
+use super::eyes::moved;
 use super::telling::{LaserTold, StepTold, tell};
 use super::{Eyes, Plan, UsedPolicy};
 use crate::allowed::Allowed;
@@ -96,6 +97,7 @@ struct CoDriver {
     eyes: Eyes,
     judge: Judge,
     laser: LaserTold,
+    period_s: f64,
     /// Its actions, and their places among the plan's motions.
     actions: Vec<Twist>,
     motions: Vec<usize>,
@@ -116,6 +118,7 @@ impl CoDriver {
     fn new(plan: &Plan, used: &UsedPolicy) -> Result<Self> {
         let (judge, mut eyes) = (used.plan.judge()?, used.plan.eyes()?);
         eyes.look_for(judge.looks());
+        eyes.go_on_from(used.policy.kept())?;
         let Some(every) = used.every(plan.settings.run.period_s) else {
             let message = format!("policy \"{}\" cannot drive in steps of this length", printable(&used.name));
             return Diagnostic::new("E-POLICY", message).help("leave --set run.period_s out").fail();
@@ -130,6 +133,7 @@ impl CoDriver {
             eyes,
             judge,
             laser: LaserTold::of(&plan.settings.laser),
+            period_s: plan.settings.run.period_s,
             motions: plan.motions_of(used),
             slowest: slowest.unwrap_or(0),
             every,
@@ -151,6 +155,7 @@ impl CoDriver {
     fn begin(&mut self, observation: &Observation) -> Result<()> {
         (self.done, self.steps, self.last) = (0, 0, None);
         self.eyes.forget();
+        self.eyes.moved(&moved(observation, self.period_s, true))?;
         self.eyes.look(observation)?;
         self.rest(observation)
     }
@@ -159,6 +164,9 @@ impl CoDriver {
     fn go_on(&mut self, observation: &Observation, motion: usize) -> Result<()> {
         self.last = self.motions.iter().position(|own| *own == motion);
         self.done += 1;
+        if self.eyes.keep() {
+            self.eyes.moved(&moved(observation, self.period_s, false))?;
+        }
         if self.done < self.every {
             return Ok(());
         }

@@ -46,7 +46,9 @@ impl Member {
         let grid = Grid::new(&self.grid, width_px, height_px).map_err(|error| wrong(&error.0))?;
         let grid = grid.with_period(plan.settings.run.period_s);
         let map = Box::new(GridMap::new(&self.grid, grid.clone()));
-        Ok(Eyes::new(vec![chain], vec![grid], map, &plan.settings))
+        let mut eyes = Eyes::new(vec![chain], vec![grid], map, &plan.settings);
+        eyes.go_on_from(self.policy.kept())?;
+        Ok(eyes)
     }
 }
 

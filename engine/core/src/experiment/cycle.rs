@@ -13,6 +13,7 @@ use crate::settings::Settings;
 use crate::state::StateMap;
 
 use super::co_driver::CoDrivers;
+use super::eyes::moved;
 use super::telling::{LaserTold, StepTold, tell};
 use super::{Eyes, Hand, Plan, Step};
 use filter_api::Format;
@@ -45,6 +46,7 @@ pub struct Cycle<R> {
     ended: Ended,
     /// After so many steps an attempt is broken off.
     stay_steps: u64,
+    period_s: f64,
 }
 
 impl<R: Robot> Cycle<R> {
@@ -54,6 +56,16 @@ impl<R: Robot> Cycle<R> {
     /// If the plan's filters, grid or script do not work, or a sensor fails.
     pub fn new(plan: &Plan, robot: R) -> Result<Self> {
         Self::with_eyes(plan, robot, plan.eyes()?, Vec::new())
+    }
+
+    /// A cycle whose eyes go on from what others kept, see [`Cycle::kept`]; from nothing if that is empty.
+    ///
+    /// # Errors
+    /// As [`Cycle::new`], and if the plan's filters do not keep such a thing.
+    pub fn going_on_from(plan: &Plan, robot: R, kept: &[u8]) -> Result<Self> {
+        let mut eyes = plan.eyes()?;
+        eyes.go_on_from(kept)?;
+        Self::with_eyes(plan, robot, eyes, Vec::new())
     }
 
     /// A cycle whose states come from another map than the plan's grid.
@@ -92,10 +104,11 @@ impl<R: Robot> Cycle<R> {
             has_goals: plan.behaviour.has_goals(),
             ended: Ended::default(),
             stay_steps: plan.stay_steps(),
+            period_s: settings.run.period_s,
         };
         cycle.measure_reach();
         cycle.observation.ground = cycle.reads_ground().then(Default::default);
-        cycle.perceive()?;
+        cycle.perceive(true)?;
         cycle.calibrate()?;
         cycle.rest()?;
         Ok(cycle)
@@ -237,7 +250,7 @@ impl<R: Robot> Cycle<R> {
         let (index, state, potential) = (self.steps, self.state(), self.potential);
         self.robot.act(self.actions[action])?;
         self.since_recovery += 1;
-        self.perceive()?;
+        self.perceive(false)?;
         self.fill_facts(action, index + 1);
         let stage = self.judge.stage();
         let verdict = self.judge.judge().map_err(|error| at_step(error, index))?;
@@ -305,7 +318,7 @@ impl<R: Robot> Cycle<R> {
         self.potential = 0.0;
         self.since_recovery = 0;
         self.eyes.iter_mut().for_each(Eyes::forget);
-        self.perceive()?;
+        self.perceive(true)?;
         if !self.judge.is_calibrated() {
             self.calibrate()?;
         } else if self.stay_steps < u64::MAX {
@@ -315,10 +328,19 @@ impl<R: Robot> Cycle<R> {
         self.rest()
     }
 
+    /// What the filters of the script's own eyes keep; empty if they keep nothing.
+    pub(super) fn kept(&mut self) -> Vec<u8> {
+        // Whoever goes on from nothing where there should be something is told so.
+        self.eyes[0].kept().unwrap_or_default()
+    }
+
     /// Sense, filter, state.
-    fn perceive(&mut self) -> Result<()> {
+    fn perceive(&mut self, jumped: bool) -> Result<()> {
         self.robot.observe(&mut self.observation)?;
         for eyes in &mut self.eyes {
+            if eyes.keep() {
+                eyes.moved(&moved(&self.observation, self.period_s, jumped))?;
+            }
             eyes.look(&self.observation)?;
         }
         self.compose();
@@ -335,7 +357,8 @@ impl<R: Robot> Cycle<R> {
 /// An observation of the images that filters like: grey if that is all that they look at, depth if one does.
 fn asking_for(settings: &Settings, likes: &[Format]) -> Observation {
     let (width_px, height_px) = (settings.camera.width_px as usize, settings.camera.height_px as usize);
-    let (beams, mut in_light) = (settings.laser.beams as usize, likes.iter().filter(|format| **format != Format::Depth));
+    let (beams, mut in_light) =
+        (settings.laser.beams as usize, likes.iter().filter(|format| **format != Format::Depth));
     let (depth, alone) = (likes.contains(&Format::Depth), in_light.clone().next().is_none());
     let format = if in_light.all(|format| *format == Format::Grey) { Format::Grey } else { Format::Rgb };
     let observation = Observation::asking_for(format, width_px, height_px, beams);

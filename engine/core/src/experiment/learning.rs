@@ -234,12 +234,12 @@ impl<R: Robot, L: Learner> Learning<R, L> {
 
     /// What is known now; learning can go on as if nobody had looked.
     #[must_use]
-    pub fn snapshot(&self) -> Learned {
+    pub fn snapshot(&mut self) -> Learned {
         Learned {
             seed: self.seed,
             steps: self.steps(),
             tally: self.tally.clone(),
-            policy: self.learner.policy(),
+            policy: self.learner.policy().keeping(self.cycle.kept()),
             early: self.early.clone().finish(),
             joined: self.joined.steps.clone(),
             state_hash: self.hash.clone().finish_with(&self.learner),

@@ -55,13 +55,19 @@ impl Parts<'_> {
         let camera = &self.settings.camera;
         if camera.depth && camera.lens == Lens::Fisheye {
             let error = Diagnostic::new("E-FILTER-SETTING", "a depth camera has a pinhole lens, not a fisheye");
-            return Err(self.point(error, "camera.depth", "asks for depth", Some("leave one of the two out".to_owned())));
+            return Err(self.point(
+                error,
+                "camera.depth",
+                "asks for depth",
+                Some("leave one of the two out".to_owned()),
+            ));
         }
         if !chain.reads_depth() || camera.depth {
             return Ok(());
         }
         let name = view.filters.first().map_or("", |filter| &filter.name);
-        let error = Diagnostic::new("E-FILTER-SETTING", format!("filter '{name}' reads depth, and the camera measures none"));
+        let error =
+            Diagnostic::new("E-FILTER-SETTING", format!("filter '{name}' reads depth, and the camera measures none"));
         let help = "write camera(#{ depth: true });".to_owned();
         Err(self.point(error, &view.place("filter:0"), "reads depth", Some(help)))
     }

@@ -89,7 +89,8 @@ impl<'a, R: Robot> Playback<'a, R> {
         robots: impl Fn() -> Result<R> + Send + 'a,
     ) -> Result<Self> {
         let first = if phase == Phase::Learning { plan.first_leg() } else { plan };
-        let (cycle, played) = (Cycle::new(first, robots()?)?, Ledger::new(first, 1));
+        let cycle = Cycle::going_on_from(first, robots()?, ledger.kept())?;
+        let played = Ledger::new(first, 1);
         let robots = Box::new(robots);
         Ok(Self { plan, phase, ledger, robots, cycle, swapped: 0, played, done: 0, must_recover: false })
     }
@@ -97,7 +98,7 @@ impl<'a, R: Robot> Playback<'a, R> {
     /// Stands before the first step again.
     fn rewind(&mut self) -> Result<()> {
         let first = if self.phase == Phase::Learning { self.plan.first_leg() } else { self.plan };
-        self.cycle = Cycle::new(first, (self.robots)()?)?;
+        self.cycle = Cycle::going_on_from(first, (self.robots)()?, self.ledger.kept())?;
         self.played = Ledger::new(first, 1);
         (self.swapped, self.done, self.must_recover) = (0, 0, false);
         Ok(())

@@ -24,7 +24,7 @@ pub struct Chain {
 }
 
 pub(super) struct Stage {
-    descriptor: &'static Descriptor,
+    pub(super) descriptor: &'static Descriptor,
     pub(super) filter: Box<dyn Running>,
     pub(super) output: Vec<u8>,
 }

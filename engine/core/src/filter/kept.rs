@@ -30,13 +30,13 @@ impl Chain {
 
     /// Whether it reads depth images, and not the camera's colours.
     #[must_use]
-    pub(crate) fn reads_depth(&self) -> bool {
+    pub fn reads_depth(&self) -> bool {
         self.likes() == Format::Depth
     }
 
     /// How many bytes its filters keep from image to image; 0 if none keeps anything.
     #[must_use]
-    pub(crate) fn keeps(&self) -> usize {
+    pub fn keeps(&self) -> usize {
         self.stages.iter().map(|stage| stage.filter.keeps()).sum()
     }
 
@@ -44,16 +44,22 @@ impl Chain {
     ///
     /// # Errors
     /// If one of them fails.
-    pub(crate) fn moved(&mut self, moved: &Moved) -> Result<()> {
+    pub fn moved(&mut self, moved: &Moved) -> Result<()> {
         let keepers = self.stages.iter_mut().filter(|stage| stage.filter.keeps() > 0);
         keepers.map(|stage| &mut stage.filter).try_for_each(|filter| filter.moved(moved))
+    }
+
+    /// What its filters keep, in words: a sentence for each that has something to say.
+    pub(crate) fn words(&self) -> impl Iterator<Item = (&'static str, String)> {
+        let say = |stage: &super::chain::Stage| (stage.descriptor.name, stage.filter.words());
+        self.stages.iter().map(say).filter(|(_, words)| !words.is_empty())
     }
 
     /// All that its filters keep, one after the other.
     ///
     /// # Errors
     /// If one of them fails.
-    pub(crate) fn save(&mut self) -> Result<Vec<u8>> {
+    pub fn save(&mut self) -> Result<Vec<u8>> {
         let mut all = vec![0; self.keeps()];
         let mut rest = all.as_mut_slice();
         for stage in &mut self.stages {
@@ -70,7 +76,7 @@ impl Chain {
     ///
     /// # Errors
     /// If these bytes are not what such a chain keeps.
-    pub(crate) fn load(&mut self, kept: &[u8]) -> Result<()> {
+    pub fn load(&mut self, kept: &[u8]) -> Result<()> {
         if kept.len() != self.keeps() {
             let message = format!("the filters keep {} bytes, and are given {}", self.keeps(), kept.len());
             let help = "what is kept belongs to the filters and the parameters that it was learned with";

@@ -43,6 +43,11 @@ pub trait Running: Send {
         Ok(())
     }
 
+    /// What it keeps, in words; nothing of a filter that comes from a file.
+    fn words(&self) -> String {
+        String::new()
+    }
+
     /// Lets it go on from what another one kept.
     ///
     /// # Errors
@@ -88,6 +93,10 @@ impl Running for Linked {
     fn save(&mut self, kept: &mut [u8]) -> Result<()> {
         self.filter.save(kept);
         Ok(())
+    }
+
+    fn words(&self) -> String {
+        self.filter.words()
     }
 
     fn load(&mut self, kept: &[u8]) -> Result<()> {

@@ -121,11 +121,14 @@ impl Camera {
         self.frame = frames;
     }
 
-    /// Renders into `image`, which gets the camera's size and keeps its format, colour or grey; grey is the luma of the
+    /// Renders into `image`, which gets the camera's size and keeps its format: colour, grey or depth. Grey is the luma of the
     /// same image in colour. `world_from_robot` is the robot's base on the ground, x forward; `moving` are the solids
     /// that do not belong to the scene, where they stand now.
     pub fn render(&mut self, world_from_robot: &Isometry3, moving: &[Solid], image: &mut Image) {
-        self.render_both(world_from_robot, moving, Some(image), None);
+        match image.format {
+            Format::Depth => self.render_both(world_from_robot, moving, None, Some(image)),
+            _ => self.render_both(world_from_robot, moving, Some(image), None),
+        }
     }
 
     /// As [`Camera::render`], but what is not asked for costs nothing: colours or brightness, and depth of the same moment.
@@ -143,11 +146,7 @@ impl Camera {
         if let Some(image) = image {
             self.fit(image);
             self.list();
-            if image.format == Format::Rgb {
-                self.paint(&mut image.pixels)
-            } else {
-                self.paint_grey(&mut image.pixels)
-            }
+            if image.format == Format::Rgb { self.paint(&mut image.pixels) } else { self.paint_grey(&mut image.pixels) }
         }
         if let Some(depth) = depth {
             self.fit(depth);

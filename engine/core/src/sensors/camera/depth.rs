@@ -34,7 +34,8 @@ pub(super) struct DepthSensor {
 impl DepthSensor {
     pub(super) fn new(settings: &CameraSettings, seed: u64) -> Self {
         let deviation = (settings.depth_noise * f64::from(NEARNESS_ONE)) as f32;
-        let noise = if settings.depth { normal_table().iter().map(|draw| draw * deviation).collect() } else { Vec::new() };
+        let noise =
+            if settings.depth { normal_table().iter().map(|draw| draw * deviation).collect() } else { Vec::new() };
         let share = |share: f64| (share.min(1.0) * 65_536.0).round() as u32;
         let holes = [share(settings.depth_holes), share(settings.depth_holes * HOLES_AT_EDGES)];
         Self { seed: seed ^ SEED_APART, noise, holes, row: vec![0.0; settings.width_px as usize] }

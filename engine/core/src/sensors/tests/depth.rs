@@ -7,6 +7,7 @@ use crate::sensors::Camera;
 use crate::sensors::observation::Image;
 use crate::settings::{CameraSettings, Settings};
 use filter_api::Format;
+use std::sync::Arc;
 
 fn settings() -> CameraSettings {
     let defaults = Settings::default().camera;
@@ -32,8 +33,9 @@ fn nearness_is_one_over_the_distance_ahead_of_what_each_ray_meets() {
         if !is_free(&solids, &place.coords) {
             continue;
         }
-        let nearness = measured(&mut Camera::new(&scene(solids.clone()), &settings, 1), &pose);
-        let [right, down, ahead] = [[0.0, -1.0, 0.0], [-sin, 0.0, -cos], [cos, 0.0, -sin]].map(|axis| pose * Vector3::from(axis));
+        let nearness = measured(&mut Camera::new(&Arc::new(scene(solids.clone(), 15)), &settings, 1), &pose);
+        let [right, down, ahead] =
+            [[0.0, -1.0, 0.0], [-sin, 0.0, -cos], [cos, 0.0, -sin]].map(|axis| pose * Vector3::from(axis));
         for (index, found) in nearness.into_iter().enumerate() {
             let (x, y) = ((index % 96) as f64 + 0.5 - 48.0, (index / 96) as f64 + 0.5 - 36.0);
             let ray = ahead + (right * x + down * y) / focal_px;
@@ -52,7 +54,9 @@ fn nearness_is_one_over_the_distance_ahead_of_what_each_ray_meets() {
 fn noise_has_its_deviation_in_nearness_and_leaves_the_sky_empty() {
     let level = CameraSettings { tilt_deg: 0.0, ..settings() };
     let noisy = CameraSettings { depth_noise: 0.01, ..level.clone() };
-    let of = |settings| measured(&mut Camera::new(&scene(Vec::new()), settings, 1), &Isometry3::identity());
+    let of = |settings: &CameraSettings| {
+        measured(&mut Camera::new(&Arc::new(scene(Vec::new(), 1)), settings, 1), &Isometry3::identity())
+    };
     let (exact, found) = (of(&level), of(&noisy));
     assert!(exact[..36 * 96].iter().chain(&found[..36 * 96]).all(|nearness| *nearness == 0));
     // 0.01 1/m are 82 of 8192; from the row 10 on the floor is further from nothing than that.
@@ -65,7 +69,7 @@ fn noise_has_its_deviation_in_nearness_and_leaves_the_sky_empty() {
 #[test]
 fn holes_take_their_share_of_a_plain_floor() {
     let pierced = CameraSettings { tilt_deg: 90.0, depth_holes: 0.2, ..settings() };
-    let found = measured(&mut Camera::new(&scene(Vec::new()), &pierced, 1), &Isometry3::identity());
+    let found = measured(&mut Camera::new(&Arc::new(scene(Vec::new(), 1)), &pierced, 1), &Isometry3::identity());
     let share = found.iter().filter(|nearness| **nearness == 0).count() as f64 / found.len() as f64;
     assert!((share - 0.2).abs() < 0.02, "{share}");
 }
@@ -74,7 +78,7 @@ fn holes_take_their_share_of_a_plain_floor() {
 fn asking_for_depth_changes_no_colour() {
     let noisy = CameraSettings { noise: 2.0, ..settings() };
     let mut random = Random::new(6, Stream::Test);
-    let scene = scene(random_solids(&mut random, 14));
+    let scene = Arc::new(scene(random_solids(&mut random, 14), 15));
     let [mut alone, mut both] = [0, 1].map(|_| Camera::new(&scene, &noisy, 3));
     let (mut image, mut same, mut depth) = (Image::new(0, 0), Image::new(0, 0), Image::of(Format::Depth, 0, 0));
     for _ in 0..2 {
