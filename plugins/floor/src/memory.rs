@@ -92,10 +92,14 @@ impl FloorMemory {
     /// What the model makes of each grey now.
     fn judge(&mut self) {
         let least = self.rare * u64::from(self.total);
-        for grey in 0..256_usize {
+        // By grey: the sum of all below it.
+        let mut below = [0_u64; 257];
+        for (grey, share) in self.model.iter().enumerate() {
+            below[grey + 1] = below[grey] + u64::from(*share);
+        }
+        for (grey, foreign) in self.foreign.iter_mut().enumerate() {
             let near = grey.saturating_sub(self.levels)..(grey + self.levels + 1).min(256);
-            let sum: u64 = self.model[near].iter().map(|share| u64::from(*share)).sum();
-            self.foreign[grey] = if (sum << 16) >= least { 0 } else { 255 };
+            *foreign = if ((below[near.end] - below[near.start]) << 16) >= least { 0 } else { 255 };
         }
     }
 
