@@ -20,8 +20,11 @@ fn drive() -> Vec<(Image, Moved)> {
         let mut image = Image::of(Format::Rgb, 16, 12);
         let base = 40 + 30 * random.below(4) as u8;
         image.pixels.fill_with(|| base + random.below(12) as u8);
-        let jumped = index % 17 == 0;
-        (image, Moved { driven_m: if jumped { 0.0 } else { 0.01 * f64::from(random.below(12)) }, turned_rad: 0.0, jumped })
+        let jumped = index.is_multiple_of(17);
+        (
+            image,
+            Moved { driven_m: if jumped { 0.0 } else { 0.01 * f64::from(random.below(12)) }, turned_rad: 0.0, jumped },
+        )
     };
     (0..60).map(one).collect()
 }

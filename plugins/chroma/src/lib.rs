@@ -94,7 +94,7 @@ impl Chroma {
             }
         }
         let all: u64 = sums.iter().sum();
-        let share = |sum: u64| if all == 0 { WHOLE / 3 } else { ((sum * WHOLE as u64 + all / 2) / all) as i32 };
+        let share = |sum: u64| (sum * WHOLE as u64 + all / 2).checked_div(all).map_or(WHOLE / 3, |share| share as i32);
         [share(sums[0]), share(sums[2])]
     }
 }

@@ -84,8 +84,7 @@ impl FloorMemory {
     fn learn(&mut self, shares: &[u16; 256]) {
         self.total += WHOLE - (self.total >> FADING);
         for (model, share) in self.model.iter_mut().zip(shares) {
-            *model += u32::from(*share);
-            *model -= *model >> FADING;
+            *model = *model - (*model >> FADING) + u32::from(*share);
         }
     }
 

@@ -131,26 +131,32 @@ impl Filter for Relief {
         if self.rows.len() != input.height_px() {
             self.rows = (0..input.height_px()).map(|row| self.bounds(&mount, row, input.height_px())).collect();
         }
-        let rows = input.pixels().chunks_exact(input.stride()).zip(output.pixels().chunks_exact_mut(input.width_px()));
-        for ((pixels, out), bounds) in rows.zip(&self.rows) {
-            mark_row(self.processor, pixels, out, *bounds, self.holes);
-        }
+        mark(self.processor, input.pixels(), output.pixels(), &self.rows, self.holes);
         Ok(())
     }
 }
 
 compiled_for_each_processor! {
-    /// Marks the pixels of a row outside of its bounds; one at which nothing was measured only if `holes` says so, and then only
-    /// where there are bounds.
-    fn mark_row<'a>(pixels: &'a [u8], out: &'a mut [u8], bounds: Bounds, holes: bool) {
-        let Bounds { low, width } = bounds;
-        let hole = if holes && bounds != ANYTHING { 255 } else { 0 };
-        for (pixel, out) in pixels.chunks_exact(2).zip(out) {
-            let nearness = u16::from_le_bytes([pixel[0], pixel[1]]);
-            // Below the lowest it wraps round, and is greater than the width too.
-            let marked = if nearness.wrapping_sub(low) > width { 255 } else { 0 };
-            *out = if nearness == 0 { hole } else { marked };
+    /// Marks the pixels of each row outside of its bounds, as many rows as there are bounds, at least one.
+    fn mark<'a>(pixels: &'a [u8], out: &'a mut [u8], rows: &'a [Bounds], holes: bool) {
+        let width = out.len() / rows.len();
+        let lines = pixels.chunks_exact(2 * width).zip(out.chunks_exact_mut(width));
+        for ((pixels, out), bounds) in lines.zip(rows) {
+            mark_row(pixels, out, *bounds, holes);
         }
+    }
+}
+
+/// Marks a row; a pixel at which nothing was measured only if `holes` says so, and then only where there are bounds.
+#[inline(always)]
+fn mark_row(pixels: &[u8], out: &mut [u8], bounds: Bounds, holes: bool) {
+    let Bounds { low, width } = bounds;
+    let hole = if holes && bounds != ANYTHING { 255 } else { 0 };
+    for (pixel, out) in pixels.chunks_exact(2).zip(out) {
+        let nearness = u16::from_le_bytes([pixel[0], pixel[1]]);
+        // Below the lowest it wraps round, and is greater than the width too.
+        let marked = if nearness.wrapping_sub(low) > width { 255 } else { 0 };
+        *out = if nearness == 0 { hole } else { marked };
     }
 }
 
@@ -201,7 +207,7 @@ mod tests {
         let pixels: Vec<u8> = (0..2 * 77_u32).map(|index| (index * 89 % 251) as u8).collect();
         let of = |processor| {
             let mut out = [7; 77];
-            mark_row(processor, &pixels, &mut out, Bounds { low: 9_000, width: 20_000 }, true);
+            mark(processor, &pixels, &mut out, &[Bounds { low: 9_000, width: 20_000 }], true);
             out
         };
         assert!(Processor::all().into_iter().all(|processor| of(processor) == of(Processor::PORTABLE)));

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use filter_api::{Descriptor, FilterError, Format, Frame, FrameMut, Parameter, ParameterKind};
 
+use super::beginning::{descriptor_of, first_reads};
 use super::catalogue::Catalogue;
 use super::condition::{self, ConditionError, EXAMPLE};
 use super::entry::{Entry, Form};
@@ -165,23 +166,6 @@ impl Chain {
     /// What each stage made of the last image, in order: the filter's descriptor and its pixels.
     pub fn stages(&self) -> impl Iterator<Item = (&'static Descriptor, &[u8])> {
         self.stages.iter().map(|stage| (stage.descriptor, stage.output.as_slice()))
-    }
-}
-
-/// What a chain begins with: depth if that is what its first filter reads, else colour.
-fn first_reads(settings: &[FilterSettings], catalogue: &Catalogue) -> Format {
-    let first = settings.first().and_then(|filter| Some(descriptor_of(&*catalogue.find(&filter.name).ok()?, filter)));
-    match first {
-        Some(descriptor) if descriptor.reads.first() == Some(&Format::Depth) => Format::Depth,
-        _ => Format::Rgb,
-    }
-}
-
-/// What a filter says of itself, as it is set.
-fn descriptor_of(entry: &Entry, filter: &FilterSettings) -> &'static Descriptor {
-    match &filter.condition {
-        Some(text) if entry.by_condition && condition::looks_at_depth(text) => &condition::OF_DEPTH,
-        _ => entry.descriptor,
     }
 }
 

@@ -4,6 +4,7 @@
 //! modules, all by the contract of `plugins/filter-api`. This room never knows a world, a state or a script.
 
 mod alike;
+mod beginning;
 mod catalogue;
 mod chain;
 mod condition;
