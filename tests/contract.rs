@@ -2,7 +2,8 @@ use std::fmt::Write;
 use std::mem::offset_of;
 
 use filter_api::abi::{
-    ABI_VERSION, BRIGHTNESS, ERROR, MESSAGE_BYTES, OK, PANIC, PLUGIN_SYMBOL, RawFrame, RawParameter, RawPlugin, RawText,
+    ABI_VERSION, BRIGHTNESS, ERROR, MESSAGE_BYTES, OK, PANIC, PLUGIN_SYMBOL, RawFirst, RawFrame, RawMount, RawMoved,
+    RawParameter, RawPlugin, RawText,
 };
 use filter_api::{Format, ParameterKind};
 
@@ -24,6 +25,7 @@ impl Claims {
             ("FILTER_RGB", Format::Rgb.bit() as usize),
             ("FILTER_GREY", Format::Grey.bit() as usize),
             ("FILTER_MASK", Format::Mask.bit() as usize),
+            ("FILTER_DEPTH", Format::Depth.bit() as usize),
             ("FILTER_BRIGHTNESS", BRIGHTNESS as usize),
             ("FILTER_NUMBER", ParameterKind::Number as usize),
             ("FILTER_WHOLE", ParameterKind::Whole as usize),
@@ -58,6 +60,13 @@ impl Claims {
 macro_rules! fields {
     ($claims:expr, $c:literal, $rust:ty: $($field:ident $(as $other:literal)?),*) => {
         $claims.size($c, size_of::<$rust>());
+        offsets!($claims, $c, $rust: $($field $(as $other)?),*);
+    };
+}
+
+/// Says so of some fields alone.
+macro_rules! offsets {
+    ($claims:expr, $c:literal, $rust:ty: $($field:ident $(as $other:literal)?),*) => {
         $($claims.offset($c, [$($other,)? stringify!($field)][0], offset_of!($rust, $field));)*
     };
 }
@@ -68,7 +77,10 @@ fn the_header_lays_structs_out_as_rust_does() {
     fields!(claims, "filter_text", RawText: bytes, length);
     fields!(claims, "filter_parameter", RawParameter: min, max, default as "default_value", name, unit, purpose, kind);
     fields!(claims, "filter_frame", RawFrame: width_px, height_px, stride_bytes, format, pixels);
-    fields!(claims, "filter_plugin", RawPlugin: abi_version, plugin_bytes, parameter_bytes, frame_bytes, name, version,
+    fields!(claims, "filter_mount", RawMount: focal_px, forward_m, height_m, tilt_sin, tilt_cos, fisheye);
+    fields!(claims, "filter_moved", RawMoved: driven_m, turned_rad, jumped);
+    fields!(claims, "filter_plugin", RawPlugin: first as "abi_version", mount, moved, keeps, save, load);
+    offsets!(claims, "filter_plugin", RawFirst: abi_version, plugin_bytes, parameter_bytes, frame_bytes, name, version,
         licence, purpose, reads, writes, parameter_count, parameters, create, process, destroy);
     let bench = Bench::new();
     let out = bench.path().join("claims.o");
@@ -77,7 +89,7 @@ fn the_header_lays_structs_out_as_rust_does() {
 
 /// Where the engine reads a field out of a 32-bit module: the struct, the field, the offset, and the engine's own words.
 const READ_AT: &[(&str, &str, usize, &str)] = &[
-    ("filter_plugin", "abi_version", 0, "if field(0)? != ABI_VERSION"),
+    ("filter_plugin", "abi_version", 0, "let version = field(0)?"),
     ("filter_plugin", "plugin_bytes", 4, "[field(4)?, field(8)?, field(12)?]"),
     ("filter_plugin", "parameter_bytes", 8, "[field(4)?, field(8)?, field(12)?]"),
     ("filter_plugin", "frame_bytes", 12, "[field(4)?, field(8)?, field(12)?]"),
@@ -108,9 +120,13 @@ fn the_engine_reads_a_module_where_the_header_puts_its_fields() {
         claims.offset(of, field, *offset);
         assert!(layout.contains(words), "layout.rs reads {field} of {of} elsewhere");
     }
-    for (constant, of, bytes) in
-        [("PLUGIN", "filter_plugin", 76), ("PARAMETER", "filter_parameter", 56), ("FRAME", "filter_frame", 20)]
-    {
+    for (constant, of, bytes) in [
+        ("PLUGIN", "filter_plugin", 96),
+        ("PARAMETER", "filter_parameter", 56),
+        ("FRAME", "filter_frame", 20),
+        ("MOUNT", "filter_mount", 48),
+        ("MOVED", "filter_moved", 24),
+    ] {
         claims.size(of, bytes);
         assert!(layout.contains(&format!("const {constant}_BYTES: u32 = {bytes};")), "{constant}_BYTES");
     }
@@ -127,7 +143,7 @@ fn the_engine_reads_a_module_where_the_header_puts_its_fields() {
 fn the_header_exports_the_symbol_that_the_engine_looks_for() {
     let header = std::fs::read_to_string(root().join("plugins/filter-api/filter.h")).unwrap();
     assert!(header.contains(&format!("const filter_plugin {PLUGIN_SYMBOL} = ")));
-    for function in ["", "_create", "_process", "_allocate"] {
+    for function in ["", "_create", "_process", "_allocate", "_mount", "_moved", "_keeps", "_save", "_load"] {
         assert!(header.contains(&format!("FILTER_EXPORT_AS(\"{PLUGIN_SYMBOL}{function}\")")), "{function}");
     }
 }

@@ -1,6 +1,7 @@
 use std::sync::Arc;
 
-use engine::filter::{Catalogue, Entry, Form, conformance};
+use engine::filter::{Catalogue, Entry, Form, conformance, mount_of};
+use engine::settings::Settings;
 use filter_api::{Descriptor, Format, Frame, FrameMut};
 
 use crate::support::filters::{entries, forms};
@@ -31,13 +32,14 @@ fn another_size_or_format_than_agreed_is_an_error_and_no_panic() {
         let descriptor = entry.descriptor;
         let defaults: Vec<f64> = descriptor.parameters.iter().map(|parameter| parameter.default).collect();
         let mut filter = entry.start(&defaults).unwrap();
+        filter.mount(&mount_of(&Settings::default().camera)).unwrap();
         let mut process = |format: Format, width: usize| {
             let bytes = vec![0; 12 * format.channels()];
             let mut out = vec![0; width * 3 * descriptor.writes.channels()];
             let input = Frame::new(4, 3, format, &bytes).unwrap();
             filter.process(input, FrameMut::new(width, 3, descriptor.writes, &mut out).unwrap())
         };
-        for format in [Format::Rgb, Format::Grey, Format::Mask] {
+        for format in [Format::Rgb, Format::Grey, Format::Mask, Format::Depth] {
             let reads = descriptor.reads.contains(&format);
             assert_eq!(process(format, 4).is_ok(), reads, "{} ({form}) and {format:?}", descriptor.name);
             assert!(process(format, 3).is_err(), "{} ({form})", descriptor.name);

@@ -40,6 +40,8 @@ mod forms;
 mod golden;
 /// Scripts that ask for too much: refused, or within their limits.
 mod hostile;
+/// Filters that keep something, in every form, in policies and in recorded runs.
+mod keepers;
 /// Folders of runs and tests: nothing written over, tagged away or forged without a word.
 mod kept;
 /// Runs that go on from what others have learned, and one rule for what is carried on.

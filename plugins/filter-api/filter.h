@@ -3,7 +3,8 @@
  * The law in prose stands in README.md beside this file. In short:
  *
  *   - Frames are row-major, top row first, left pixel first. Row y begins at pixels + y * stride_bytes.
- *   - The same frame and parameters give the same output, whatever was processed before.
+ *   - The same frame and parameters give the same output, whatever was processed before; or, of a filter that keeps
+ *     something, the same frames and movements since it was created or loaded.
  *   - The host owns every frame, text buffer and array of values that it passes; the filter owns its instance.
  *   - Instances are independent: different ones may run at the same time on different threads, one instance never
  *     runs twice at once.
@@ -21,8 +22,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The version of this contract. A host loads only filters of its own version. */
-#define FILTER_ABI_VERSION 1u
+/* The version of this contract. A host loads filters of its own version and of older ones; version 1 ended after
+ * `destroy`. */
+#define FILTER_ABI_VERSION 2u
 
 /* What one pixel holds; also the bits of filter_plugin.reads. */
 enum {
@@ -32,7 +34,11 @@ enum {
 
     /* Only in filter_plugin.reads, beside FILTER_RGB and FILTER_GREY: of colour the filter sees the brightness alone, so
      * that a host may pass (77 R + 150 G + 29 B) / 256, rounded down, as a grey frame instead and get the same output. */
-    FILTER_BRIGHTNESS = 8
+    FILTER_BRIGHTNESS = 8,
+
+    /* A uint16_t, the lower byte first: nearness, one over the distance ahead of the lens, in 1/8192 1/m; 0 where nothing
+     * was measured. */
+    FILTER_DEPTH = 16
 };
 
 /* What kind of number a parameter is. */
@@ -77,9 +83,28 @@ typedef struct {
     uint32_t width_px;
     uint32_t height_px;
     uint32_t stride_bytes; /* from one row to the next */
-    uint32_t format;       /* one of FILTER_RGB, FILTER_GREY, FILTER_MASK */
+    uint32_t format;       /* one of FILTER_RGB, FILTER_GREY, FILTER_MASK, FILTER_DEPTH */
     uint8_t *pixels;
 } filter_frame;
+
+/* How the camera is mounted. A point of the image x pixels right of its middle and y below it looks along
+ * ahead + x / focal_px * right + y / focal_px * down; on flat ground its nearness is
+ * (tilt_sin + y / focal_px * tilt_cos) / height_m, where that is positive. */
+typedef struct {
+    double focal_px;  /* of a fisheye, pixels for each radian */
+    double forward_m; /* ahead of the robot's centre */
+    double height_m;  /* above the ground */
+    double tilt_sin;  /* of the angle by which it looks down */
+    double tilt_cos;
+    uint32_t fisheye; /* 1 if the lens is an equidistant fisheye */
+} filter_mount;
+
+/* How the robot moved since the last frame, as its wheels say. */
+typedef struct {
+    double driven_m;   /* backwards counts as forwards */
+    double turned_rad; /* positive to the left */
+    uint32_t jumped;   /* 1 if it was put elsewhere, and with the first frame of all; then the other two are 0 */
+} filter_moved;
 
 /* What a library says of itself, and its functions. */
 typedef struct filter_plugin {
@@ -106,6 +131,23 @@ typedef struct filter_plugin {
 
     /* Frees an instance. */
     void (*destroy)(void *instance);
+
+    /* What follows came with version 2. Each may be NULL. */
+
+    /* Hears how the camera is mounted: once, before the first frame. */
+    int32_t (*mount)(void *instance, const filter_mount *mount, char *message);
+
+    /* Hears how the robot moved: before each frame, if the filter keeps something. */
+    void (*moved)(void *instance, const filter_moved *moved);
+
+    /* How many bytes an instance keeps from frame to frame, the same number for all of its life; 0 for nothing. */
+    uint32_t (*keeps)(void *instance);
+
+    /* Writes all that the instance keeps into so many bytes. */
+    void (*save)(void *instance, uint8_t *kept);
+
+    /* Lets an instance go on as if it had seen and heard all that the one had that saved this, and nothing else. */
+    int32_t (*load)(void *instance, const uint8_t *kept, uint32_t bytes, char *message);
 } filter_plugin;
 
 /* FILTER_EXPORT(.name = FILTER_TEXT("contrast"), ...); makes the library's one filter known to the host: everything of
@@ -127,6 +169,23 @@ typedef struct filter_plugin {
     int32_t filter_export_process(void *instance, const filter_frame *input, const filter_frame *output,               \
                                   char *message) {                                                                     \
         return filter_exported.process(instance, input, output, message);                                              \
+    }                                                                                                                  \
+    FILTER_EXPORT_AS("engine_filter_mount")                                                                            \
+    int32_t filter_export_mount(void *instance, const filter_mount *mount, char *message) {                            \
+        return filter_exported.mount ? filter_exported.mount(instance, mount, message) : FILTER_OK;                    \
+    }                                                                                                                  \
+    FILTER_EXPORT_AS("engine_filter_moved") void filter_export_moved(void *instance, const filter_moved *moved) {      \
+        if (filter_exported.moved) filter_exported.moved(instance, moved);                                             \
+    }                                                                                                                  \
+    FILTER_EXPORT_AS("engine_filter_keeps") uint32_t filter_export_keeps(void *instance) {                             \
+        return filter_exported.keeps ? filter_exported.keeps(instance) : 0;                                            \
+    }                                                                                                                  \
+    FILTER_EXPORT_AS("engine_filter_save") void filter_export_save(void *instance, uint8_t *kept) {                    \
+        if (filter_exported.save) filter_exported.save(instance, kept);                                                \
+    }                                                                                                                  \
+    FILTER_EXPORT_AS("engine_filter_load")                                                                             \
+    int32_t filter_export_load(void *instance, const uint8_t *kept, uint32_t bytes, char *message) {                   \
+        return filter_exported.load ? filter_exported.load(instance, kept, bytes, message) : FILTER_OK;                \
     }                                                                                                                  \
     /* Memory for the host's frames: whole pages, never freed; 0 when there is no more. */                             \
     FILTER_EXPORT_AS("engine_filter_allocate") void *filter_export_allocate(uint32_t bytes) {                          \

@@ -11,7 +11,8 @@ use sha2::{Digest, Sha256};
 use super::root;
 
 /// The filters of this project, none of which needs another library: they can be built without Cargo.
-pub(crate) const FILTERS: [&str; 7] = ["blur", "colour", "floor", "horizon", "scharr", "sobel", "threshold"];
+pub(crate) const FILTERS: [&str; 9] =
+    ["blur", "chroma", "colour", "floor", "horizon", "relief", "scharr", "sobel", "threshold"];
 
 /// What they are built with: the contract, and what compiles them for each processor.
 const LIBRARIES_OF_FILTERS: [(&str, &str); 2] =

@@ -77,6 +77,7 @@ pub(super) fn test_seed(
     stop: &AtomicBool,
 ) -> Result<SeedTest> {
     let mut kept = Ledger::new(plan, plan.settings.run.test_steps.min(room));
+    kept.set_out_from(learned.map_or(&[], |learned| learned.policy.kept()));
     let run = Decider::of(learned).test(plan, seed, stop, &mut kept)?;
     let lines = base_lines(plan, seed, &run, stop)?;
     Ok(SeedTest { run, lines, kept })

@@ -83,8 +83,8 @@ fn pascal_row(n: usize) -> Vec<u32> {
 impl Filter for Blur {
     fn process(&mut self, input: Frame<'_>, mut output: FrameMut<'_>) -> Result<(), FilterError> {
         output.check_same_size(&input)?;
-        if input.format() == Format::Mask {
-            return Err(FilterError("blur reads colour or grey frames, not a mask".to_owned()));
+        if matches!(input.format(), Format::Mask | Format::Depth) {
+            return Err(FilterError("blur reads colour or grey frames".to_owned()));
         }
         let (width, height) = (input.width_px(), input.height_px());
         if width == 0 || height == 0 {

@@ -5,8 +5,11 @@
 use std::ffi::c_void;
 use std::os::raw::c_char;
 
-/// The version of the contract; a host loads only filters of its own version.
-pub const ABI_VERSION: u32 = 1;
+/// The version of the contract. A host loads filters of every version from [`OLDEST_VERSION`] to this.
+pub const ABI_VERSION: u32 = 2;
+
+/// The oldest version that a host loads: its plugins end after [`RawFirst`].
+pub const OLDEST_VERSION: u32 = 1;
 
 /// The name of the static [`RawPlugin`] of a native library, and of the function of a WebAssembly module that returns its
 /// address.
@@ -71,6 +74,36 @@ pub struct RawFrame {
     pub pixels: *mut u8,
 }
 
+/// How the camera is mounted; see [`Mount`](crate::Mount).
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct RawMount {
+    /// Pixels; of a fisheye, pixels for each radian.
+    pub focal_px: f64,
+    /// Metres ahead of the robot's centre.
+    pub forward_m: f64,
+    /// Metres above the ground.
+    pub height_m: f64,
+    /// The sine of the angle by which the camera looks down.
+    pub tilt_sin: f64,
+    /// Its cosine.
+    pub tilt_cos: f64,
+    /// 1 if the lens is an equidistant fisheye, else 0.
+    pub fisheye: u32,
+}
+
+/// How the robot moved; see [`Moved`](crate::Moved).
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct RawMoved {
+    /// Metres.
+    pub driven_m: f64,
+    /// Radians, positive to the left.
+    pub turned_rad: f64,
+    /// 1 if the robot was put elsewhere, else 0.
+    pub jumped: u32,
+}
+
 /// Makes an instance.
 pub type RawCreate = unsafe extern "C" fn(*const f64, u32, *mut *mut c_void, *mut c_char) -> i32;
 /// Fills a frame from a frame.
@@ -78,13 +111,24 @@ pub type RawProcess = unsafe extern "C" fn(*mut c_void, *const RawFrame, *const 
 /// Frees an instance.
 pub type RawDestroy = unsafe extern "C" fn(*mut c_void);
 
-/// What a library says of itself, and its functions.
+/// Hears how the camera is mounted.
+pub type RawMountFilter = unsafe extern "C" fn(*mut c_void, *const RawMount, *mut c_char) -> i32;
+/// Hears how the robot moved.
+pub type RawTellMoved = unsafe extern "C" fn(*mut c_void, *const RawMoved);
+/// How many bytes an instance keeps.
+pub type RawKeeps = unsafe extern "C" fn(*mut c_void) -> u32;
+/// Writes what an instance keeps.
+pub type RawSave = unsafe extern "C" fn(*mut c_void, *mut u8);
+/// Reads what an instance keeps.
+pub type RawLoad = unsafe extern "C" fn(*mut c_void, *const u8, u32, *mut c_char) -> i32;
+
+/// What a library says of itself, and its functions, as in the first version of the contract.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
-pub struct RawPlugin {
-    /// [`ABI_VERSION`]; first, in every version.
+pub struct RawFirst {
+    /// The version that the library was built for; first, in every version.
     pub abi_version: u32,
-    /// The size of this struct.
+    /// The size of the whole plugin.
     pub plugin_bytes: u32,
     /// The size of [`RawParameter`].
     pub parameter_bytes: u32,
@@ -112,6 +156,24 @@ pub struct RawPlugin {
     pub process: Option<RawProcess>,
     /// Frees an instance.
     pub destroy: Option<RawDestroy>,
+}
+
+/// A plugin: what there was in the first version, then what came with the second. Each of the new functions may be left out.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct RawPlugin {
+    /// What there was in the first version.
+    pub first: RawFirst,
+    /// Hears how the camera is mounted.
+    pub mount: Option<RawMountFilter>,
+    /// Hears how the robot moved.
+    pub moved: Option<RawTellMoved>,
+    /// How many bytes an instance keeps.
+    pub keeps: Option<RawKeeps>,
+    /// Writes what an instance keeps.
+    pub save: Option<RawSave>,
+    /// Reads what an instance keeps.
+    pub load: Option<RawLoad>,
 }
 
 /// A value that holds pointers to statics only, and so may be shared between threads.

@@ -8,9 +8,14 @@ use std::os::raw::c_char;
 use std::panic::{catch_unwind, AssertUnwindSafe};
 
 use crate::abi::{
-    RawCreate, RawFrame, RawParameter, RawPlugin, RawText, ABI_VERSION, BRIGHTNESS, ERROR, MESSAGE_BYTES, OK, PANIC,
+    RawCreate, RawFirst, RawFrame, RawParameter, RawPlugin, RawText, ABI_VERSION, BRIGHTNESS, ERROR, MESSAGE_BYTES, OK,
+    PANIC,
 };
 use crate::{Filter, FilterError, Format, Frame, FrameMut, Parameter, Plugin};
+
+mod kept;
+
+pub use kept::{keeps, load, mount, moved, save};
 
 /// Makes a [`Plugin`] the one filter of a library: `filter_api::export!(PLUGIN);`, once for each library.
 ///
@@ -21,7 +26,7 @@ macro_rules! export {
         #[allow(unsafe_code, unreachable_pub, missing_docs, non_upper_case_globals)]
         const _: () = {
             use std::{ffi::c_void, os::raw::c_char};
-            use $crate::abi::{RawFrame, RawParameter, RawPlugin, Shared};
+            use $crate::abi::{RawFrame, RawMount, RawMoved, RawParameter, RawPlugin, Shared};
 
             const EXPORTED: $crate::Plugin = $plugin;
             const PARAMETERS: &[RawParameter; EXPORTED.descriptor.parameters.len()] =
@@ -56,6 +61,41 @@ macro_rules! export {
                 message: *mut c_char,
             ) -> i32 {
                 $crate::export::process(instance, input, output, message)
+            }
+
+            #[cfg(target_family = "wasm")]
+            #[export_name = "engine_filter_mount"]
+            pub unsafe extern "C" fn mount(instance: *mut c_void, mount: *const RawMount, message: *mut c_char) -> i32 {
+                $crate::export::mount(instance, mount, message)
+            }
+
+            #[cfg(target_family = "wasm")]
+            #[export_name = "engine_filter_moved"]
+            pub unsafe extern "C" fn moved(instance: *mut c_void, moved: *const RawMoved) {
+                $crate::export::moved(instance, moved)
+            }
+
+            #[cfg(target_family = "wasm")]
+            #[export_name = "engine_filter_keeps"]
+            pub unsafe extern "C" fn keeps(instance: *mut c_void) -> u32 {
+                $crate::export::keeps(instance)
+            }
+
+            #[cfg(target_family = "wasm")]
+            #[export_name = "engine_filter_save"]
+            pub unsafe extern "C" fn save(instance: *mut c_void, kept: *mut u8) {
+                $crate::export::save(instance, kept)
+            }
+
+            #[cfg(target_family = "wasm")]
+            #[export_name = "engine_filter_load"]
+            pub unsafe extern "C" fn load(
+                instance: *mut c_void,
+                kept: *const u8,
+                bytes: u32,
+                message: *mut c_char,
+            ) -> i32 {
+                $crate::export::load(instance, kept, bytes, message)
             }
 
             #[cfg(target_family = "wasm")]
@@ -100,7 +140,7 @@ pub const fn plugin(plugin: &Plugin, parameters: *const RawParameter, create: Ra
         reads |= descriptor.reads[index].bit();
         index += 1;
     }
-    RawPlugin {
+    let first = RawFirst {
         abi_version: ABI_VERSION,
         plugin_bytes: std::mem::size_of::<RawPlugin>() as u32,
         parameter_bytes: std::mem::size_of::<RawParameter>() as u32,
@@ -116,7 +156,8 @@ pub const fn plugin(plugin: &Plugin, parameters: *const RawParameter, create: Ra
         create: Some(create),
         process: Some(process),
         destroy: Some(destroy),
-    }
+    };
+    RawPlugin { first, mount: Some(mount), moved: Some(moved), keeps: Some(keeps), save: Some(save), load: Some(load) }
 }
 
 /// Whether grey stands first, and more than it: the order in which a filter likes its formats.

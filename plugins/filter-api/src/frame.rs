@@ -11,7 +11,13 @@ pub enum Format {
     Grey,
     /// One byte, 0 or 255.
     Mask,
+    /// Two bytes, the lower one first: nearness, one over the distance ahead of the lens, in 1/[`NEARNESS_ONE`] 1/m; 0 where
+    /// nothing was measured.
+    Depth,
 }
+
+/// The nearness of what is 1 m ahead of the lens, in a depth frame.
+pub const NEARNESS_ONE: u16 = 8192;
 
 impl Format {
     /// Bytes for each pixel.
@@ -20,6 +26,7 @@ impl Format {
         match self {
             Self::Rgb => 3,
             Self::Grey | Self::Mask => 1,
+            Self::Depth => 2,
         }
     }
 
@@ -30,6 +37,7 @@ impl Format {
             Self::Rgb => 1,
             Self::Grey => 2,
             Self::Mask => 4,
+            Self::Depth => 16,
         }
     }
 
@@ -40,6 +48,7 @@ impl Format {
             1 => Some(Self::Rgb),
             2 => Some(Self::Grey),
             4 => Some(Self::Mask),
+            16 => Some(Self::Depth),
             _ => None,
         }
     }
@@ -92,9 +101,12 @@ impl<'a> Frame<'a> {
     /// BT.601 weights in 8 bits); of grey and masks the byte itself.
     ///
     /// # Errors
-    /// If `luma` has not one byte for each pixel.
+    /// If `luma` has not one byte for each pixel, or this is a depth frame.
     pub fn write_luma(&self, luma: &mut [u8]) -> Result<(), FilterError> {
         check_length(self.width_px, self.height_px, Format::Grey, luma.len())?;
+        if self.format == Format::Depth {
+            return Err(FilterError("a depth frame has no brightness".to_owned()));
+        }
         if self.format != Format::Rgb {
             luma.copy_from_slice(self.pixels);
             return Ok(());
@@ -104,6 +116,11 @@ impl<'a> Frame<'a> {
             *luma = (weighted >> 8) as u8;
         }
         Ok(())
+    }
+
+    /// The nearness of each pixel of a depth frame, in 1/[`NEARNESS_ONE`] 1/m, row after row.
+    pub fn nearness(&self) -> impl Iterator<Item = u16> + 'a {
+        self.pixels.chunks_exact(2).map(|pixel| u16::from_le_bytes([pixel[0], pixel[1]]))
     }
 
     /// Bytes from one row to the next: width times channels.
@@ -192,5 +209,13 @@ mod tests {
         Frame::new(2, 1, Format::Grey, &[9, 200]).unwrap().write_luma(&mut luma).unwrap();
         assert_eq!(luma, [9, 200]);
         assert!(Frame::new(1, 1, Format::Grey, &[9]).unwrap().write_luma(&mut luma).is_err());
+    }
+
+    #[test]
+    fn nearness_has_two_bytes_the_lower_one_first_and_no_brightness() {
+        // 2 m and 0.5 m ahead, and nothing.
+        let frame = Frame::new(3, 1, Format::Depth, &[0, 16, 0, 64, 0, 0]).unwrap();
+        assert_eq!(frame.nearness().collect::<Vec<_>>(), [NEARNESS_ONE / 2, NEARNESS_ONE * 2, 0]);
+        assert!(frame.write_luma(&mut [0; 3]).is_err());
     }
 }

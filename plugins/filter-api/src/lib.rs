@@ -13,7 +13,10 @@ pub mod abi;
 pub mod export;
 mod frame;
 
-pub use frame::{Format, Frame, FrameMut};
+mod told;
+
+pub use frame::{Format, Frame, FrameMut, NEARNESS_ONE};
+pub use told::{Mount, Moved};
 
 /// What a filter says of itself; a host lists it without creating an instance.
 #[derive(Debug, Clone, Copy)]
@@ -74,6 +77,47 @@ pub trait Filter: Send {
     /// # Errors
     /// Where the frames' sizes or formats are not those of the contract.
     fn process(&mut self, input: Frame<'_>, output: FrameMut<'_>) -> Result<(), FilterError>;
+
+    /// Hears how the camera is mounted: once, before the first frame.
+    ///
+    /// # Errors
+    /// If it cannot work with this camera.
+    fn mount(&mut self, mount: &Mount) -> Result<(), FilterError> {
+        let _ = mount;
+        Ok(())
+    }
+
+    /// Hears how the robot moved since the last frame: before each frame, if it [keeps](Filter::keeps) something.
+    fn moved(&mut self, moved: &Moved) {
+        let _ = moved;
+    }
+
+    /// How many bytes it keeps from frame to frame, the same number for all of its life; 0 if it keeps nothing, which is the law
+    /// for a filter that says nothing here.
+    fn keeps(&self) -> usize {
+        0
+    }
+
+    /// Writes all that it keeps into [`Filter::keeps`] bytes.
+    fn save(&self, kept: &mut [u8]) {
+        let _ = kept;
+    }
+
+    /// What it keeps, in words for a person: a sentence, or nothing. The C contract has no words.
+    fn words(&self) -> String {
+        String::new()
+    }
+
+    /// Goes on as if it had seen and heard all that the filter had that saved this, and nothing else.
+    ///
+    /// # Errors
+    /// If these bytes are not what such a filter saves.
+    fn load(&mut self, kept: &[u8]) -> Result<(), FilterError> {
+        match kept {
+            [] => Ok(()),
+            _ => Err(FilterError(format!("it keeps nothing, and is given {} bytes", kept.len()))),
+        }
+    }
 }
 
 /// What a filter crate exports.

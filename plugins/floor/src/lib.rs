@@ -3,11 +3,13 @@
 //! The strip at the bottom middle of the frame is taken to be floor. Of each channel its mean and deviation are computed
 //! in this strip; a pixel is marked where any channel is more than `tolerance` deviations away from the mean. A deviation
 //! counts as at least [`LEAST_DEVIATION`], so that a floor of one plain colour is recognised too. Nothing is remembered:
-//! each frame is compared with its own strip.
+//! each frame is compared with its own strip. With `memory` it is another filter: see `memory`.
 //!
 //! All arithmetic is on whole numbers, so every machine marks the same pixels.
 
 #![deny(unsafe_code)]
+
+mod memory;
 
 use filter_api::{Descriptor, Filter, FilterError, Format, Frame, FrameMut, Parameter, ParameterKind, Plugin};
 
@@ -56,6 +58,33 @@ const DESCRIPTOR: Descriptor = Descriptor {
             default: 4.0,
             purpose: "How far a channel may be off the mean of the strip.",
         },
+        Parameter {
+            name: "memory",
+            kind: ParameterKind::Switch,
+            unit: "on or off",
+            min: 0.0,
+            max: 1.0,
+            default: 0.0,
+            purpose: "Whether it learns which greys are floor from what the robot drives over.",
+        },
+        Parameter {
+            name: "levels",
+            kind: ParameterKind::Whole,
+            unit: "grey levels",
+            min: 0.0,
+            max: 64.0,
+            default: 6.0,
+            purpose: "With `memory`: greys so near to one another are one grey.",
+        },
+        Parameter {
+            name: "rare",
+            kind: ParameterKind::Number,
+            unit: "share of the floor",
+            min: 0.0001,
+            max: 0.5,
+            default: 0.03,
+            purpose: "With `memory`: a grey is floor if so much of the floor has it.",
+        },
     ],
 };
 
@@ -68,8 +97,11 @@ struct Floor {
 
 fn create(values: &[f64]) -> Result<Box<dyn Filter>, FilterError> {
     let (height, width, tolerance) = match values {
-        [height, width, tolerance] => (height, width, tolerance),
-        _ => return Err(FilterError(format!("floor takes 3 parameters, not {}", values.len()))),
+        [height, width, _, memory, levels, rare] if *memory != 0.0 => {
+            return Ok(Box::new(memory::FloorMemory::new([*height, *width], *levels as usize, *rare)));
+        }
+        [height, width, tolerance, _, _, _] => (height, width, tolerance),
+        _ => return Err(FilterError(format!("floor takes 6 parameters, not {}", values.len()))),
     };
     Ok(Box::new(Floor { height: *height, width: *width, tolerance: (tolerance * 256.0).round() as u64 }))
 }
@@ -132,8 +164,8 @@ impl Floor {
 impl Filter for Floor {
     fn process(&mut self, input: Frame<'_>, mut output: FrameMut<'_>) -> Result<(), FilterError> {
         output.check_same_size(&input)?;
-        if input.format() == Format::Mask {
-            return Err(FilterError("floor reads colour or grey frames, not a mask".to_owned()));
+        if matches!(input.format(), Format::Mask | Format::Depth) {
+            return Err(FilterError("floor reads colour or grey frames".to_owned()));
         }
         if input.width_px() == 0 || input.height_px() == 0 {
             return Ok(());
@@ -161,7 +193,8 @@ mod tests {
         let mut out = vec![7; width * height];
         let input = Frame::new(width, height, format, pixels).unwrap();
         let output = FrameMut::new(width, height, Format::Mask, &mut out).unwrap();
-        create(values).unwrap().process(input, output).unwrap();
+        let values = [&values[..], &[0.0, 6.0, 0.03]].concat();
+        create(&values).unwrap().process(input, output).unwrap();
         out
     }
 

@@ -70,7 +70,7 @@ impl Filter for Scharr {
                 input.write_luma(&mut self.luma)?;
                 &self.luma
             }
-            Format::Mask => return Err(FilterError("scharr reads colour or grey frames, not a mask".to_owned())),
+            Format::Mask | Format::Depth => return Err(FilterError("scharr reads colour or grey frames".to_owned())),
         };
         kernel::mark_edges(self.processor, luma, width, self.least_square, output.pixels());
         Ok(())

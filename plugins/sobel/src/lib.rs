@@ -66,7 +66,7 @@ impl Filter for Sobel {
                 kernel::luma_of_colour(self.processor, input.pixels(), &mut self.luma);
                 &self.luma
             }
-            Format::Mask => return Err(FilterError("sobel reads colour or grey frames, not a mask".to_owned())),
+            Format::Mask | Format::Depth => return Err(FilterError("sobel reads colour or grey frames".to_owned())),
         };
         kernel::mark_edges(self.processor, luma, width, self.least_square, output.pixels());
         Ok(())

@@ -67,8 +67,8 @@ fn create(values: &[f64]) -> Result<Box<dyn Filter>, FilterError> {
 impl Filter for Threshold {
     fn process(&mut self, input: Frame<'_>, mut output: FrameMut<'_>) -> Result<(), FilterError> {
         output.check_same_size(&input)?;
-        if input.format() == Format::Mask {
-            return Err(FilterError("threshold reads colour or grey frames, not a mask".to_owned()));
+        if matches!(input.format(), Format::Mask | Format::Depth) {
+            return Err(FilterError("threshold reads colour or grey frames".to_owned()));
         }
         input.write_luma(output.pixels())?;
         // Copies, which the loop cannot change: so it becomes vector code.

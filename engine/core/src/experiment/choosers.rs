@@ -44,6 +44,10 @@ impl Chooser for Frozen<'_> {
         let (action, explored) = self.policy.choose(states[0], allowed, &mut self.room, &mut self.random);
         Ok(Choice { action, explored })
     }
+
+    fn kept(&self) -> &[u8] {
+        self.policy.kept()
+    }
 }
 
 /// Several policies as one, each in the state that its own eyes perceive.

@@ -4,6 +4,7 @@
 //! Its rules are judged for the stages that they lead to, not for their values; where they end an attempt, it begins again.
 //! Nothing of it is worked out while it does not drive.
 
+use super::eyes::moved;
 use super::telling::{LaserTold, StepTold, tell};
 use super::{Eyes, Plan, UsedPolicy};
 use crate::allowed::Allowed;
@@ -49,8 +50,9 @@ impl CoDrivers {
         self.drivers.iter().any(|driver| driver.judge.reads_ground())
     }
 
-    pub(super) fn like_grey(&self) -> bool {
-        self.drivers.iter().flat_map(|driver| &driver.eyes.chains).all(|chain| chain.likes() == Format::Grey)
+    /// What their filters read.
+    pub(super) fn like(&self) -> impl Iterator<Item = Format> {
+        self.drivers.iter().flat_map(|driver| driver.eyes.likes())
     }
 
     /// Looks at the first observation of the run, by which scripts calibrate.
@@ -95,6 +97,7 @@ struct CoDriver {
     eyes: Eyes,
     judge: Judge,
     laser: LaserTold,
+    period_s: f64,
     /// Its actions, and their places among the plan's motions.
     actions: Vec<Twist>,
     motions: Vec<usize>,
@@ -115,6 +118,7 @@ impl CoDriver {
     fn new(plan: &Plan, used: &UsedPolicy) -> Result<Self> {
         let (judge, mut eyes) = (used.plan.judge()?, used.plan.eyes()?);
         eyes.look_for(judge.looks());
+        eyes.go_on_from(used.policy.kept())?;
         let Some(every) = used.every(plan.settings.run.period_s) else {
             let message = format!("policy \"{}\" cannot drive in steps of this length", printable(&used.name));
             return Diagnostic::new("E-POLICY", message).help("leave --set run.period_s out").fail();
@@ -129,6 +133,7 @@ impl CoDriver {
             eyes,
             judge,
             laser: LaserTold::of(&plan.settings.laser),
+            period_s: plan.settings.run.period_s,
             motions: plan.motions_of(used),
             slowest: slowest.unwrap_or(0),
             every,
@@ -141,7 +146,7 @@ impl CoDriver {
     }
 
     fn calibrate(&mut self, observation: &Observation) -> Result<()> {
-        self.eyes.look(&observation.image)?;
+        self.eyes.look(observation)?;
         self.tell(observation, NO_ACTION);
         self.judge.calibrate()
     }
@@ -150,7 +155,8 @@ impl CoDriver {
     fn begin(&mut self, observation: &Observation) -> Result<()> {
         (self.done, self.steps, self.last) = (0, 0, None);
         self.eyes.forget();
-        self.eyes.look(&observation.image)?;
+        self.eyes.moved(&moved(observation, self.period_s, true))?;
+        self.eyes.look(observation)?;
         self.rest(observation)
     }
 
@@ -158,13 +164,16 @@ impl CoDriver {
     fn go_on(&mut self, observation: &Observation, motion: usize) -> Result<()> {
         self.last = self.motions.iter().position(|own| *own == motion);
         self.done += 1;
+        if self.eyes.keep() {
+            self.eyes.moved(&moved(observation, self.period_s, false))?;
+        }
         if self.done < self.every {
             return Ok(());
         }
         (self.done, self.steps) = (0, self.steps + 1);
-        self.eyes.look(&observation.image)?;
+        self.eyes.look(observation)?;
         if !self.judge.remembers() {
-            self.state = self.eyes.state(&observation.image, self.judge.digits());
+            self.state = self.eyes.state(observation, self.judge.digits());
             return Ok(());
         }
         self.tell(observation, self.last.unwrap_or(NO_ACTION));
@@ -174,7 +183,7 @@ impl CoDriver {
             self.steps = 0;
             return self.rest(observation);
         }
-        self.state = self.eyes.state(&observation.image, self.judge.digits());
+        self.state = self.eyes.state(observation, self.judge.digits());
         Ok(())
     }
 
@@ -201,7 +210,7 @@ impl CoDriver {
             self.tell(observation, NO_ACTION);
             self.judge.take()?;
         }
-        self.state = self.eyes.state(&observation.image, self.judge.digits());
+        self.state = self.eyes.state(observation, self.judge.digits());
         Ok(())
     }
 

@@ -37,11 +37,18 @@ impl Member {
             Box::new(Diagnostic::new("E-POLICY", message))
         };
         let chain = Chain::new(&self.filters, width_px, height_px, &plan.filters)
-            .map_err(|error| wrong(&error.error.message))?;
+            .map_err(|error| wrong(&error.error.message))?
+            .mounted(&plan.settings.camera)
+            .map_err(|error| wrong(&error.message))?;
+        if chain.reads_depth() && !plan.settings.camera.depth {
+            return Err(wrong("it reads depth, and the camera measures none"));
+        }
         let grid = Grid::new(&self.grid, width_px, height_px).map_err(|error| wrong(&error.0))?;
         let grid = grid.with_period(plan.settings.run.period_s);
         let map = Box::new(GridMap::new(&self.grid, grid.clone()));
-        Ok(Eyes::new(vec![chain], vec![grid], map, &plan.settings))
+        let mut eyes = Eyes::new(vec![chain], vec![grid], map, &plan.settings);
+        eyes.go_on_from(self.policy.kept())?;
+        Ok(eyes)
     }
 }
 

@@ -10,9 +10,11 @@ use crate::judge::{Judge, Judgement, Leave, NO_ACTION};
 use crate::outcome::Ending;
 use crate::robot::{Ended, Robot};
 use crate::sensors::observation::{Image, Observation};
+use crate::settings::Settings;
 use crate::state::StateMap;
 
 use super::co_driver::CoDrivers;
+use super::eyes::moved;
 use super::telling::{LaserTold, StepTold, tell};
 use super::{Eyes, Hand, Plan, Step};
 use filter_api::Format;
@@ -48,6 +50,7 @@ pub struct Cycle<R> {
     stay_steps: u64,
     /// Other rules that judge along.
     witnesses: Vec<Witness>,
+    period_s: f64,
 }
 
 impl<R: Robot> Cycle<R> {
@@ -57,6 +60,16 @@ impl<R: Robot> Cycle<R> {
     /// If the plan's filters, grid or script do not work, or a sensor fails.
     pub fn new(plan: &Plan, robot: R) -> Result<Self> {
         Self::with_eyes(plan, robot, plan.eyes()?, Vec::new())
+    }
+
+    /// A cycle whose eyes go on from what others kept, see [`Cycle::kept`]; from nothing if that is empty.
+    ///
+    /// # Errors
+    /// As [`Cycle::new`], and if the plan's filters do not keep such a thing.
+    pub fn going_on_from(plan: &Plan, robot: R, kept: &[u8]) -> Result<Self> {
+        let mut eyes = plan.eyes()?;
+        eyes.go_on_from(kept)?;
+        Self::with_eyes(plan, robot, eyes, Vec::new())
     }
 
     /// A cycle whose states come from another map than the plan's grid.
@@ -82,19 +95,14 @@ impl<R: Robot> Cycle<R> {
         let judge = plan.judge()?;
         others.insert(0, own);
         let co_drivers = CoDrivers::new(plan)?;
-        let grey = others.iter().flat_map(|eyes| &eyes.chains).all(|chain| chain.likes() == Format::Grey);
-        let format = match grey && co_drivers.like_grey() {
-            true => Format::Grey,
-            false => Format::Rgb,
-        };
-        let (width_px, height_px) = (settings.camera.width_px as usize, settings.camera.height_px as usize);
+        let likes: Vec<Format> = others.iter().flat_map(Eyes::likes).chain(co_drivers.like()).collect();
         let mut cycle = Self {
             robot,
             states: vec![0; others.len()],
             eyes: others,
             judge,
             actions: plan.motions(),
-            observation: Observation::asking_for(format, width_px, height_px, settings.laser.beams as usize),
+            observation: asking_for(settings, &likes),
             steps: 0,
             since_recovery: 0,
             potential: 0.0,
@@ -105,10 +113,11 @@ impl<R: Robot> Cycle<R> {
             ended: Ended::default(),
             stay_steps: plan.stay_steps(),
             witnesses,
+            period_s: settings.run.period_s,
         };
         cycle.measure_reach();
         cycle.look();
-        cycle.perceive()?;
+        cycle.perceive(true)?;
         cycle.calibrate()?;
         cycle.rest()?;
         cycle.set_witnesses_out()?;
@@ -135,7 +144,7 @@ impl<R: Robot> Cycle<R> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn ask_for(&mut self, format: Format) {
-        let Image { width_px, height_px, .. } = self.observation.image;
+        let Image { width_px, height_px, .. } = *self.observation.sight();
         self.observation.image = Image::of(format, width_px, height_px);
     }
 
@@ -193,7 +202,7 @@ impl<R: Robot> Cycle<R> {
     /// The states of what was looked at last.
     fn compose(&mut self) {
         for (eyes, state) in self.eyes.iter_mut().zip(&mut self.states) {
-            *state = eyes.state(&self.observation.image, self.judge.digits());
+            *state = eyes.state(&self.observation, self.judge.digits());
         }
     }
 
@@ -251,7 +260,7 @@ impl<R: Robot> Cycle<R> {
         let (index, state, potential) = (self.steps, self.state(), self.potential);
         self.robot.act(self.actions[action])?;
         self.since_recovery += 1;
-        self.perceive()?;
+        self.perceive(false)?;
         self.fill_facts(action, index + 1);
         self.tell_witnesses(action, index + 1);
         let stage = self.judge.stage();
@@ -322,7 +331,7 @@ impl<R: Robot> Cycle<R> {
         self.potential = 0.0;
         self.since_recovery = 0;
         self.eyes.iter_mut().for_each(Eyes::forget);
-        self.perceive()?;
+        self.perceive(true)?;
         if !self.judge.is_calibrated() {
             self.calibrate()?;
         } else if self.stay_steps < u64::MAX {
@@ -333,11 +342,20 @@ impl<R: Robot> Cycle<R> {
         self.set_witnesses_out()
     }
 
+    /// What the filters of the script's own eyes keep; empty if they keep nothing.
+    pub(super) fn kept(&mut self) -> Vec<u8> {
+        // Whoever goes on from nothing where there should be something is told so.
+        self.eyes[0].kept().unwrap_or_default()
+    }
+
     /// Sense, filter, state.
-    fn perceive(&mut self) -> Result<()> {
+    fn perceive(&mut self, jumped: bool) -> Result<()> {
         self.robot.observe(&mut self.observation)?;
         for eyes in &mut self.eyes {
-            eyes.look(&self.observation.image)?;
+            if eyes.keep() {
+                eyes.moved(&moved(&self.observation, self.period_s, jumped))?;
+            }
+            eyes.look(&self.observation)?;
         }
         self.compose();
         Ok(())
@@ -352,6 +370,17 @@ impl<R: Robot> Cycle<R> {
         let twist = self.actions.get(action).copied().unwrap_or_default();
         StepTold { action, twist, step, since_recovery: self.since_recovery, state: self.states[0] }
     }
+}
+
+/// An observation of the images that filters like: grey if that is all that they look at, depth if one does.
+fn asking_for(settings: &Settings, likes: &[Format]) -> Observation {
+    let (width_px, height_px) = (settings.camera.width_px as usize, settings.camera.height_px as usize);
+    let (beams, mut in_light) =
+        (settings.laser.beams as usize, likes.iter().filter(|format| **format != Format::Depth));
+    let (depth, alone) = (likes.contains(&Format::Depth), in_light.clone().next().is_none());
+    let format = if in_light.all(|format| *format == Format::Grey) { Format::Grey } else { Format::Rgb };
+    let observation = Observation::asking_for(format, width_px, height_px, beams);
+    if depth { observation.with_depth(alone) } else { observation }
 }
 
 fn at_step(mut error: Box<Diagnostic>, index: u64) -> Box<Diagnostic> {

@@ -38,6 +38,11 @@ pub trait Chooser {
         None
     }
 
+    /// What the script's own eyes are to go on from; empty for eyes that begin anew.
+    fn kept(&self) -> &[u8] {
+        &[]
+    }
+
     /// Learns from a step, before any recovery.
     fn learn(&mut self, _step: &Step) {}
 

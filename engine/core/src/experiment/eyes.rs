@@ -3,12 +3,13 @@
 use super::SeenView;
 use crate::diagnostic::Result;
 use crate::filter::Chain;
+use crate::geometry::Twist;
 use crate::judge::{LineFacts, Look, PatchFacts, ViewFacts};
 use crate::sensors::CameraRays;
-use crate::sensors::observation::Image;
+use crate::sensors::observation::Observation;
 use crate::settings::{CameraSettings, Settings, UNNAMED_VIEW, ViewSettings};
 use crate::state::{Grid, Patch, PatchFinder, Percept, StateMap, floor_line};
-use filter_api::Descriptor;
+use filter_api::{Descriptor, Format, Moved};
 
 /// What one filter made of an image.
 #[derive(Debug, Clone, Copy)]
@@ -52,6 +53,17 @@ pub struct Eyes {
     rays: CameraRays,
     width_px: usize,
     height_px: usize,
+    /// Whether a filter keeps something.
+    keep: bool,
+}
+
+/// How the robot moved in a step of so many seconds, as its wheels say; or it was put elsewhere.
+pub(super) fn moved(observation: &Observation, period_s: f64, jumped: bool) -> Moved {
+    let Twist { linear_m_per_s, angular_rad_per_s } = observation.odometry;
+    match jumped {
+        true => Moved { driven_m: 0.0, turned_rad: 0.0, jumped },
+        false => Moved { driven_m: linear_m_per_s.abs() * period_s, turned_rad: angular_rad_per_s * period_s, jumped },
+    }
 }
 
 impl Eyes {
@@ -63,8 +75,21 @@ impl Eyes {
         let named = |view: &ViewSettings| (view.name != UNNAMED_VIEW).then(|| view.name.clone());
         let names = settings.views().map(named).take(chains.len()).collect();
         let (looks, rays) = (Vec::new(), CameraRays::new(&settings.camera));
+        let keep = chains.iter().any(|chain| chain.keeps() > 0);
         let alike = (0..chains.len()).map(|index| begins_alike(&chains, index)).collect();
-        Self { chains, alike, grids, map, names, looks, finder: PatchFinder::default(), rays, width_px, height_px }
+        Self {
+            chains,
+            alike,
+            grids,
+            map,
+            names,
+            looks,
+            finder: PatchFinder::default(),
+            rays,
+            width_px,
+            height_px,
+            keep,
+        }
     }
 
     /// These eyes with another map from what is seen to states.
@@ -81,14 +106,20 @@ impl Eyes {
         }
     }
 
-    /// Looks at an image.
+    /// What the chains read.
+    pub(super) fn likes(&self) -> impl Iterator<Item = Format> {
+        self.chains.iter().map(Chain::likes)
+    }
+
+    /// Looks at what the robot observed.
     ///
     /// # Errors
     /// If a filter fails.
-    pub(super) fn look(&mut self, image: &Image) -> Result<()> {
+    pub(super) fn look(&mut self, observation: &Observation) -> Result<()> {
         for (index, grid) in self.grids.iter_mut().enumerate() {
             let (before, rest) = self.chains.split_at_mut(index);
             let Some(chain) = rest.first_mut() else { break };
+            let image = observation.read_as(chain.likes());
             let mask = match self.alike[index].and_then(|(other, shared)| Some((before.get(other)?, shared))) {
                 Some((other, shared)) => chain.apply_after(image, other, shared)?,
                 None => chain.apply(image)?,
@@ -98,13 +129,52 @@ impl Eyes {
         Ok(())
     }
 
+    /// Whether a filter keeps something from image to image.
+    pub(super) fn keep(&self) -> bool {
+        self.keep
+    }
+
+    /// Tells the filters that keep something how the robot moved since the last image.
+    pub(super) fn moved(&mut self, moved: &Moved) -> Result<()> {
+        self.chains.iter_mut().try_for_each(|chain| chain.moved(moved))
+    }
+
+    /// What the filters of all views keep, one after the other.
+    pub(super) fn kept(&mut self) -> Result<Vec<u8>> {
+        let all = self.chains.iter_mut().map(Chain::save).collect::<Result<Vec<_>>>()?;
+        Ok(all.concat())
+    }
+
+    /// Goes on from what such eyes kept; from nothing if that is empty.
+    pub(super) fn go_on_from(&mut self, kept: &[u8]) -> Result<()> {
+        if kept.is_empty() {
+            return Ok(());
+        }
+        let mut rest = kept;
+        let last = self.chains.len().saturating_sub(1);
+        for (index, chain) in self.chains.iter_mut().enumerate() {
+            // The last one is given all that is left, so that it tells of bytes too many.
+            let bytes = if index == last { rest.len() } else { chain.keeps().min(rest.len()) };
+            let (own, others) = rest.split_at(bytes);
+            chain.load(own)?;
+            rest = others;
+        }
+        Ok(())
+    }
+
+    /// What the filters keep, in words: `floor`, and what it says.
+    pub(super) fn words(&self) -> impl Iterator<Item = (&'static str, String)> {
+        self.chains.iter().flat_map(Chain::words)
+    }
+
     /// The robot was put somewhere: what was seen before is forgotten.
     pub(super) fn forget(&mut self) {
         self.grids.iter_mut().for_each(Grid::forget);
     }
 
     /// The state of the image that was looked at last, with the other parts of a state.
-    pub(super) fn state(&mut self, image: &Image, digits: &[usize]) -> usize {
+    pub(super) fn state(&mut self, observation: &Observation, digits: &[usize]) -> usize {
+        let image = observation.read_as(self.chains[0].likes());
         let (mask, grid) = (self.chains[0].mask(), &self.grids[0]);
         self.map.encode(Percept { image, mask, grid, grids: &self.grids, digits })
     }

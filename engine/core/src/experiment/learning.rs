@@ -155,7 +155,7 @@ impl Learning {
 
     /// The same, with the rules of other plans that judge along.
     fn watched(plan: &Plan, seed: u64, others: &[&Plan]) -> Result<Self> {
-        let cycle = Cycle::watched(plan, Phase::Learning.robot(plan, seed)?, others)?;
+        let cycle = Cycle::watched(plan, Phase::Learning.robot(plan, seed)?, others, &[])?;
         let learner = plan.first_learner(cycle.state_map(), seed)?;
         Ok(Self::with(plan, seed, cycle, learner))
     }
@@ -278,12 +278,12 @@ impl<R: Robot, L: Learner> Learning<R, L> {
 
     /// What is known now; learning can go on as if nobody had looked.
     #[must_use]
-    pub fn snapshot(&self) -> Learned {
+    pub fn snapshot(&mut self) -> Learned {
         Learned {
             seed: self.seed,
             steps: self.steps(),
             tally: self.tally.clone(),
-            policy: self.learner.policy(),
+            policy: self.learner.policy().keeping(self.cycle.kept()),
             early: self.early.clone().finish(),
             joined: self.joined.steps.clone(),
             state_hash: self.hash.clone().finish_with(&self.learner),

@@ -10,7 +10,7 @@ use crate::geometry::Pose;
 use crate::random::{Random, Stream};
 use crate::robot::{Robot, SimulatedRobot};
 use crate::sensors::Camera;
-use crate::sensors::observation::{Image, Observation};
+use crate::sensors::observation::Observation;
 use crate::settings::{Settings, UNNAMED_VIEW};
 use crate::world::World;
 use filter_api::Format;
@@ -61,7 +61,7 @@ impl Plan {
         let mut camera = Camera::new(&layout.scene, &without_noise(settings).camera, 0);
         let mut chains = self.chains()?;
         let mut blind: Vec<usize> = (0..chains.len()).collect();
-        let mut image = Image::new(settings.camera.width_px as usize, settings.camera.height_px as usize);
+        let mut seen = asking_for_both(settings, 0);
         let lap = layout.lap.map(|lap| &layout.routes[lap]);
         let along = lap
             .into_iter()
@@ -70,8 +70,9 @@ impl Plan {
             for heading in 0..HEADINGS {
                 let turn = TAU * heading as f64 / HEADINGS as f64;
                 world.place(0, Pose::new(place.x_m, place.y_m, place.yaw_rad + turn));
-                camera.render(&world.body(0).world_from_robot(), world.seen_by(0), &mut image);
-                blind.retain(|view| !leaves_any(&mut chains[*view], &image));
+                let (image, depth) = (Some(&mut seen.image), seen.depth.as_mut());
+                camera.render_both(&world.body(0).world_from_robot(), world.seen_by(0), image, depth);
+                blind.retain(|view| !leaves_any(&mut chains[*view], &seen));
                 if blind.is_empty() {
                     return Ok(blind);
                 }
@@ -87,14 +88,13 @@ fn open_eyes_in_a_trial(plan: &Plan, blind: &mut Vec<usize>) -> Result<()> {
     let mut robot = SimulatedRobot::new(&plan.layout, &settings, 0)?;
     let mut chains = plan.chains()?;
     let mut random = Random::new(0, Stream::Untrained);
-    let (width, height) = (settings.camera.width_px as usize, settings.camera.height_px as usize);
-    let mut observation = Observation::asking_for(Format::Rgb, width, height, settings.laser.beams as usize);
+    let mut observation = asking_for_both(&settings, settings.laser.beams as usize);
     for _ in 0..TRIAL_STEPS {
         // A sensor that fails says so itself, in the run.
         if robot.observe(&mut observation).is_err() {
             blind.clear();
         }
-        blind.retain(|view| !leaves_any(&mut chains[*view], &observation.image));
+        blind.retain(|view| !leaves_any(&mut chains[*view], &observation));
         if blind.is_empty() {
             break;
         }
@@ -107,14 +107,23 @@ fn open_eyes_in_a_trial(plan: &Plan, blind: &mut Vec<usize>) -> Result<()> {
     Ok(())
 }
 
+/// Colours, and depth where there is a camera for it.
+fn asking_for_both(settings: &Settings, beams: usize) -> Observation {
+    let (width_px, height_px) = (settings.camera.width_px as usize, settings.camera.height_px as usize);
+    let observation = Observation::asking_for(Format::Rgb, width_px, height_px, beams);
+    if settings.camera.depth { observation.with_depth(false) } else { observation }
+}
+
 /// Noise would be taken for something seen.
 fn without_noise(settings: &Settings) -> Settings {
     let mut settings = settings.clone();
     settings.camera.noise = 0.0;
+    settings.camera.depth_noise = 0.0;
+    settings.camera.depth_holes = 0.0;
     settings
 }
 
 /// A filter that fails says so itself, in the run.
-fn leaves_any(chain: &mut Chain, image: &Image) -> bool {
-    chain.apply(image).is_ok_and(|mask| mask.contains(&255))
+fn leaves_any(chain: &mut Chain, observation: &Observation) -> bool {
+    chain.apply(observation.read_as(chain.likes())).is_ok_and(|mask| mask.contains(&255))
 }

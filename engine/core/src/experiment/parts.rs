@@ -9,7 +9,7 @@ use crate::geometry::Twist;
 use crate::judge::Judge;
 use crate::learner::Mirror;
 use crate::script::{Behaviour, Unread};
-use crate::settings::{LearnerKind, PartSettings, Settings, ViewSettings};
+use crate::settings::{LearnerKind, Lens, PartSettings, Settings, ViewSettings};
 use crate::state::{ComposedMap, DigitKind, Grid, GridMap, MAX_POOLED_STATES, MAX_STATES, StateMap, StatePart};
 
 /// A behaviour with its settings and the filters that it may use.
@@ -43,7 +43,33 @@ impl Parts<'_> {
     /// The fresh filter chain of a view.
     pub(super) fn chain(&self, view: &ViewSettings) -> Result<Chain> {
         let (width_px, height_px) = self.image_px();
-        Chain::new(&view.filters, width_px, height_px, self.filters).map_err(|error| self.in_chain(view, error))
+        let chain = Chain::new(&view.filters, width_px, height_px, self.filters);
+        let chain = chain.map_err(|error| self.in_chain(view, error))?;
+        self.check_depth(view, &chain)?;
+        let mounted = chain.mounted(&self.settings.camera);
+        mounted.map_err(|error| self.point(*error, &view.place("filter:0"), "cannot work with this camera", None))
+    }
+
+    /// A chain that reads depth needs a camera that measures it.
+    fn check_depth(&self, view: &ViewSettings, chain: &Chain) -> Result<()> {
+        let camera = &self.settings.camera;
+        if camera.depth && camera.lens == Lens::Fisheye {
+            let error = Diagnostic::new("E-FILTER-SETTING", "a depth camera has a pinhole lens, not a fisheye");
+            return Err(self.point(
+                error,
+                "camera.depth",
+                "asks for depth",
+                Some("leave one of the two out".to_owned()),
+            ));
+        }
+        if !chain.reads_depth() || camera.depth {
+            return Ok(());
+        }
+        let name = view.filters.first().map_or("", |filter| &filter.name);
+        let error =
+            Diagnostic::new("E-FILTER-SETTING", format!("filter '{name}' reads depth, and the camera measures none"));
+        let help = "write camera(#{ depth: true });".to_owned();
+        Err(self.point(error, &view.place("filter:0"), "reads depth", Some(help)))
     }
 
     /// A fresh filter chain, or all that is wrong in it.

@@ -149,7 +149,7 @@ impl<'a, R: Robot> Playback<'a, R> {
         rules: Option<&Plan>,
     ) -> Result<Self> {
         let (first, others) = before(plan, phase, rules);
-        let (cycle, played) = (Cycle::watched(first, robots()?, &others)?, Ledger::new(first, 1));
+        let (cycle, played) = (Cycle::watched(first, robots()?, &others, ledger.kept())?, Ledger::new(first, 1));
         let (robots, recall) = (Box::new(robots), None);
         let (swapped, done, must_recover, seed) = (0, 0, false, 0);
         Ok(Self { plan, phase, ledger, robots, cycle, swapped, played, done, must_recover, seed, recall })
@@ -163,7 +163,7 @@ impl<'a, R: Robot> Playback<'a, R> {
     /// Stands before the first step again.
     fn rewind(&mut self) -> Result<()> {
         let (first, others) = before(self.plan, self.phase, None);
-        self.cycle = Cycle::watched(first, (self.robots)()?, &others)?;
+        self.cycle = Cycle::watched(first, (self.robots)()?, &others, self.ledger.kept())?;
         if self.phase == Phase::Learning && self.recall.is_some() {
             self.recall = Recall::new(self.plan, self.seed)?;
         }

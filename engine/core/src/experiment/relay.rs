@@ -65,6 +65,10 @@ impl<C: Chooser> Chooser for Relay<'_, C> {
         self.own.choose(states, allowed)
     }
 
+    fn kept(&self) -> &[u8] {
+        self.own.kept()
+    }
+
     fn hand_over(&mut self, hand: &Hand) -> Option<Choice> {
         let UsedDrivers { drivers, random, .. } = &mut *self.used;
         let UsedDriver { used, room, motions } = drivers.get_mut(hand.policy)?;

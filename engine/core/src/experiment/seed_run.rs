@@ -66,6 +66,7 @@ fn learn_and_test(
     log: &mut RunLog,
 ) -> Result<(Option<Learned>, TestRun), Box<BrokenOff>> {
     let learned = if plan.learns() { Some(learn_into(plan, seed, stop, report, &mut log.learning)?) } else { None };
+    log.test.set_out_from(learned.as_ref().map_or(&[], |learned| learned.policy.kept()));
     match Decider::of(learned.as_ref()).test(plan, seed, stop, &mut log.test) {
         Ok(tested) => Ok((learned, tested)),
         Err(error) => Err(Box::new(BrokenOff { error, learned })),

@@ -59,7 +59,7 @@ impl Snapshot {
     #[must_use]
     pub fn of<R: Robot>(cycle: &Cycle<R>) -> Self {
         Self {
-            image: cycle.robot().photograph().unwrap_or_else(|| cycle.observation().image.clone()),
+            image: cycle.robot().photograph().unwrap_or_else(|| cycle.observation().sight().clone()),
             views: cycle.views().collect(),
             state: cycle.state(),
         }

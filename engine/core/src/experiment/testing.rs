@@ -142,7 +142,8 @@ pub fn test_choices(
     chooser: &mut impl Chooser,
     also: &mut impl Observer<SimulatedRobot>,
 ) -> Result<TestRun> {
-    test_robot(plan, &mut Cycle::new(plan, Phase::Test.robot(plan, seed)?)?, chooser, stop, also)
+    let mut cycle = Cycle::going_on_from(plan, Phase::Test.robot(plan, seed)?, chooser.kept())?;
+    test_robot(plan, &mut cycle, chooser, stop, also)
 }
 
 /// Tests the plan's combined policies as one; the plan's script judges.

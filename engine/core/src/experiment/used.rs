@@ -12,7 +12,7 @@ const MOST_ACTIONS: usize = 64;
 /// Groups of settings that say what robot it is.
 const OF_THE_ROBOT: [&str; 4] = ["robot", "camera", "laser", "ground"];
 /// Of these, settings that a policy learned under can be otherwise: they are about chance, and how finely motion is worked out.
-const OF_CHANCE: [&str; 4] = ["noise", "noise_m", "speed_noise", "tick_s"];
+const OF_CHANCE: [&str; 6] = ["noise", "noise_m", "speed_noise", "tick_s", "depth_noise", "depth_holes"];
 
 /// A policy that a script uses.
 #[derive(Clone)]

@@ -16,8 +16,17 @@ use super::{native, wasm};
 use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
 
 /// The filters that are linked in, by name; the engine's own `where` comes after them.
-pub const LINKED_IN: &[Plugin] =
-    &[blur::PLUGIN, colour::PLUGIN, floor::PLUGIN, horizon::PLUGIN, scharr::PLUGIN, sobel::PLUGIN, threshold::PLUGIN];
+pub const LINKED_IN: &[Plugin] = &[
+    blur::PLUGIN,
+    chroma::PLUGIN,
+    colour::PLUGIN,
+    floor::PLUGIN,
+    horizon::PLUGIN,
+    relief::PLUGIN,
+    scharr::PLUGIN,
+    sobel::PLUGIN,
+    threshold::PLUGIN,
+];
 
 /// Where filters come from, besides the program itself.
 #[derive(Debug, Clone, Default)]
@@ -84,8 +93,9 @@ impl Catalogue {
         Diagnostic::new("E-FILTER-TWICE", message).help(help).fail()
     }
 
-    /// Whether a filter of this name is the program's own: it keeps nothing from frame to frame.
-    pub(crate) fn is_own(&self, name: &str) -> bool {
+    /// Whether a filter of this name is the program's own.
+    #[must_use]
+    pub fn is_own(&self, name: &str) -> bool {
         self.linked_in.iter().any(|entry| entry.descriptor.name == name)
     }
 
@@ -210,7 +220,10 @@ mod tests {
     fn a_misspelt_name_is_answered_with_the_nearest() {
         let help = |name: &str| Catalogue::linked_in().find(name).err().unwrap().help.unwrap();
         assert_eq!(help("sobol"), "did you mean \"sobel\"?");
-        assert_eq!(help("x"), "there are: blur, colour, floor, horizon, scharr, sobel, threshold, where");
+        assert_eq!(
+            help("x"),
+            "there are: blur, chroma, colour, floor, horizon, relief, scharr, sobel, threshold, where"
+        );
     }
 
     #[test]

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use filter_api::{Descriptor, FilterError, Format, Frame, FrameMut, Parameter, ParameterKind};
 
+use super::beginning::{descriptor_of, first_reads};
 use super::catalogue::Catalogue;
 use super::condition::{self, ConditionError, EXAMPLE};
 use super::entry::{Entry, Form};
@@ -24,8 +25,8 @@ pub struct Chain {
 }
 
 pub(super) struct Stage {
-    descriptor: &'static Descriptor,
-    filter: Box<dyn Running>,
+    pub(super) descriptor: &'static Descriptor,
+    pub(super) filter: Box<dyn Running>,
     pub(super) output: Vec<u8>,
 }
 
@@ -67,11 +68,11 @@ impl Chain {
             return Err(fault);
         }
         let mut stages: Vec<Stage> = Vec::with_capacity(settings.len());
-        let mut format = Format::Rgb;
+        let mut format = first_reads(settings, catalogue);
         for (index, filter) in settings.iter().enumerate() {
             let at_stage = |error| ChainError { stage: index, parameter: None, within: None, error };
             let entry = catalogue.find(&filter.name).map_err(at_stage)?;
-            let descriptor = entry.descriptor;
+            let descriptor = descriptor_of(&entry, filter);
             let (values, _) = values(index, filter, descriptor.parameters);
             let filter = match (entry.by_condition, &filter.condition) {
                 (true, Some(text)) => condition::create(text).map_err(|wrong| in_condition(index, wrong))?,
@@ -89,10 +90,10 @@ impl Chain {
         let mut faults = Vec::new();
         let mut before: Vec<&'static Descriptor> = Vec::with_capacity(settings.len());
         // What comes out of the stage before; unknown behind an unknown filter.
-        let mut format = Some(Format::Rgb);
+        let mut format = Some(first_reads(settings, catalogue));
         for (index, filter) in settings.iter().enumerate() {
             let (descriptor, by_condition) = match catalogue.find(&filter.name) {
-                Ok(entry) => (entry.descriptor, entry.by_condition),
+                Ok(entry) => (descriptor_of(&entry, filter), entry.by_condition),
                 Err(error) => {
                     faults.push(ChainError { stage: index, parameter: None, within: None, error });
                     format = None;
@@ -270,6 +271,7 @@ fn name(format: Format) -> &'static str {
         Format::Rgb => "colour",
         Format::Grey => "grey",
         Format::Mask => "a mask",
+        Format::Depth => "depth",
     }
 }
 

@@ -3,7 +3,8 @@
 use filter_api::{Format, Frame, FrameMut, Parameter};
 
 use super::entry::Entry;
-use super::law::{broken, noise};
+use super::law::{TRIAL_MOUNT, broken, noise};
+use super::purity::check_kept;
 use super::running::Running;
 use crate::diagnostic::Result;
 
@@ -35,13 +36,26 @@ pub fn conformance(entry: &Entry) -> Result<u64> {
 /// One set of values: an instance that has seen other frames answers as a fresh one does.
 fn check_instance(entry: &Entry, values: &[f64], mut used: Box<dyn Running>) -> Result<u64> {
     let mut frames = 0;
+    used.mount(&TRIAL_MOUNT)?;
+    let keeps = used.keeps() > 0;
     for format in entry.descriptor.reads {
+        if keeps {
+            check_kept(entry, values, *format)?;
+            frames += 8;
+        }
         for (index, size) in SIZES.into_iter().enumerate() {
             let pixels = noise(index as u32, *format, size.0 * size.1);
             let mut fresh = (entry.create)(values)?;
+            fresh.mount(&TRIAL_MOUNT)?;
+            if keeps {
+                // What it kept belongs to other frames.
+                used = (entry.create)(values)?;
+                used.mount(&TRIAL_MOUNT)?;
+            }
             let wanted = output(entry, fresh.as_mut(), *format, size, &pixels, 7)?;
             let place = format!("{values:?} on {format:?} of {}x{} pixels", size.0, size.1);
-            for before in [7, 99] {
+            for before in if keeps { &[99][..] } else { &[7, 99] } {
+                let before = *before;
                 if output(entry, used.as_mut(), *format, size, &pixels, before)? != wanted {
                     return broken(
                         entry,
@@ -64,6 +78,10 @@ fn check_instance(entry: &Entry, values: &[f64], mut used: Box<dyn Running>) -> 
 /// A filter that likes grey best must see nothing of colour but its brightness, since hosts pass either.
 fn check_brightness(entry: &Entry, values: &[f64]) -> Result<u64> {
     let mut filter = (entry.create)(values)?;
+    filter.mount(&TRIAL_MOUNT)?;
+    if filter.keeps() > 0 {
+        return Ok(0);
+    }
     for (index, size) in SIZES.into_iter().enumerate() {
         let colours = noise(index as u32, Format::Rgb, size.0 * size.1);
         let mut luma = vec![0; size.0 * size.1];

@@ -45,13 +45,13 @@ impl DescribedFilter {
     /// With the first clause that it breaks.
     pub(super) fn check(self, code: &'static str, path: &Path) -> Result<&'static Descriptor> {
         // What a filter likes best stands first.
-        let order = if self.reads & BRIGHTNESS == 0 { [1, 2, 4] } else { [2, 1, 4] };
+        let order = if self.reads & BRIGHTNESS == 0 { [1, 2, 4, 16] } else { [2, 1, 4, 16] };
         let reads: Vec<Format> =
             order.into_iter().filter(|bit| self.reads & bit != 0).filter_map(Format::from_bit).collect();
         let writes = Format::from_bit(self.writes);
         let fault = self.fault().or_else(|| {
-            let unknown = reads.is_empty() || self.reads > 15 || !matches!(writes, Some(Format::Grey | Format::Mask));
-            unknown.then(|| "it must read colour, grey or masks, and write grey frames or masks".to_owned())
+            let unknown = reads.is_empty() || self.reads > 31 || !matches!(writes, Some(Format::Grey | Format::Mask));
+            unknown.then(|| "it must read colour, grey, masks or depth, and write grey frames or masks".to_owned())
         });
         let (None, Some(writes)) = (&fault, writes) else {
             let shown = printable(&path.display().to_string());
@@ -193,7 +193,7 @@ mod tests {
         assert!(fault(|ink| ink.name = "../ink".to_owned()).contains("lower case"));
         assert!(fault(|ink| ink.purpose = "two\nlines".to_owned()).contains("one line"));
         assert!(fault(|ink| ink.writes = 1).contains("write grey frames or masks"));
-        assert!(fault(|ink| ink.reads = 16).contains("must read"));
+        assert!(fault(|ink| ink.reads = 32).contains("must read"));
         assert!(fault(|ink| ink.parameters.push(ink.parameters[0].clone())).contains("twice"));
         assert!(fault(|ink| ink.parameters[0].kind = 9).contains("type"));
         assert!(fault(|ink| ink.parameters[0].default = f64::NAN).contains("range or a default"));

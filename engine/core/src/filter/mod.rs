@@ -4,6 +4,7 @@
 //! modules, all by the contract of `plugins/filter-api`. This room never knows a world, a state or a script.
 
 mod alike;
+mod beginning;
 mod catalogue;
 mod chain;
 mod condition;
@@ -11,6 +12,7 @@ mod conformance;
 #[cfg(any(feature = "native-filters", feature = "wasm"))]
 mod described;
 mod entry;
+mod kept;
 mod law;
 mod native;
 mod purity;
@@ -23,6 +25,7 @@ pub use chain::{Chain, ChainError};
 pub use condition::{EXAMPLE, LANGUAGE};
 pub use conformance::conformance;
 pub use entry::{Entry, Form};
+pub use kept::mount_of;
 pub use native::serve;
 pub use running::Running;
 pub use trust::Trust;

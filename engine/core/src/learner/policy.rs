@@ -21,6 +21,8 @@ pub struct Policy {
     temperature: Option<f64>,
     /// What answers for states without a row, if anything does.
     pools: Option<Arc<Pools>>,
+    /// What its eyes kept when learning ended; empty if they keep nothing.
+    kept: Vec<u8>,
 }
 
 /// What was learned about one state.
@@ -46,7 +48,7 @@ impl Policy {
     /// A policy over `states` states, with rows of some of them.
     #[must_use]
     pub const fn of_states(actions: usize, states: usize, rows: BTreeMap<usize, PolicyRow>) -> Self {
-        Self { actions, states, rows, temperature: None, pools: None }
+        Self { actions, states, rows, temperature: None, pools: None, kept: Vec::new() }
     }
 
     /// It chooses at a temperature of its own.
@@ -59,6 +61,18 @@ impl Policy {
     #[must_use]
     pub fn answering(self, pools: Option<Arc<Pools>>) -> Self {
         Self { pools, ..self }
+    }
+
+    /// Its eyes go on from this.
+    #[must_use]
+    pub fn keeping(self, kept: Vec<u8>) -> Self {
+        Self { kept, ..self }
+    }
+
+    /// What its eyes kept when learning ended; empty if they keep nothing.
+    #[must_use]
+    pub fn kept(&self) -> &[u8] {
+        &self.kept
     }
 
     /// The temperature at which it chooses, if it has one of its own.

@@ -78,9 +78,10 @@ impl Robot for SimulatedRobot {
         let here = &mut self.here;
         let world_from_robot = here.world.body(0).world_from_robot();
         let moving = in_view(&here.world, &mut here.own);
-        here.camera.render(&world_from_robot, moving, &mut observation.image);
+        let image = Some(&mut observation.image).filter(|image| image.width_px > 0);
+        here.camera.render_both(&world_from_robot, moving, image, observation.depth.as_mut());
         if let Some(watch) = &mut self.watch {
-            watch.check(&observation.image, self.moved)?;
+            watch.check(observation.sight(), self.moved)?;
         }
         here.laser.scan(&world_from_robot, here.world.seen_by(0), &mut observation.scan);
         if let Some(colours) = &mut observation.ground {

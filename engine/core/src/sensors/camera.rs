@@ -19,6 +19,8 @@ use dispatch::Processor;
 use filter_api::Format;
 use std::sync::Arc;
 
+mod depth;
+
 /// Faces of movers for which there is room from the start.
 const MOVING_FACES: usize = 256;
 /// What is seen where there is nothing.
@@ -35,6 +37,7 @@ pub struct Camera {
     pinhole: Pinhole,
     fisheye: Option<Fisheye>,
     noise: Option<PixelNoise>,
+    depth: depth::DepthSensor,
     frame: u64,
     /// In the robot's axes: the lens's place, and right, down and forward.
     mount: [Vector3; 4],
@@ -89,6 +92,7 @@ impl Camera {
             pinhole,
             fisheye,
             noise: PixelNoise::new(settings.noise, seed),
+            depth: depth::DepthSensor::new(settings, seed),
             frame: 0,
             mount,
             surfaces,
@@ -117,27 +121,48 @@ impl Camera {
         self.frame = frames;
     }
 
-    /// Renders into `image`, which gets the camera's size and keeps its format, colour or grey; grey is the luma of the
+    /// Renders into `image`, which gets the camera's size and keeps its format: colour, grey or depth. Grey is the luma of the
     /// same image in colour. `world_from_robot` is the robot's base on the ground, x forward; `moving` are the solids
     /// that do not belong to the scene, where they stand now.
     pub fn render(&mut self, world_from_robot: &Isometry3, moving: &[Solid], image: &mut Image) {
+        match image.format {
+            Format::Depth => self.render_both(world_from_robot, moving, None, Some(image)),
+            _ => self.render_both(world_from_robot, moving, Some(image), None),
+        }
+    }
+
+    /// As [`Camera::render`], but what is not asked for costs nothing: colours or brightness, and depth of the same moment.
+    pub fn render_both(
+        &mut self,
+        world_from_robot: &Isometry3,
+        moving: &[Solid],
+        image: Option<&mut Image>,
+        depth: Option<&mut Image>,
+    ) {
+        let view = self.view(world_from_robot);
+        let frustum = view.frustum();
+        self.place_movers(moving, &frustum);
+        self.find_visible(&view, &frustum);
+        if let Some(image) = image {
+            self.fit(image);
+            self.list();
+            if image.format == Format::Rgb { self.paint(&mut image.pixels) } else { self.paint_grey(&mut image.pixels) }
+        }
+        if let Some(depth) = depth {
+            self.fit(depth);
+            self.measure(&mut depth.pixels);
+        }
+        self.frame += 1;
+    }
+
+    /// Gives an image the camera's size.
+    fn fit(&self, image: &mut Image) {
         let (width, height) = (self.width_px, self.height_px);
         if (image.width_px, image.height_px) != (width, height)
             || image.pixels.len() != width * height * image.format.channels()
         {
             *image = Image::of(image.format, width, height);
         }
-        let view = self.view(world_from_robot);
-        let frustum = view.frustum();
-        self.place_movers(moving, &frustum);
-        self.find_visible(&view, &frustum);
-        self.list();
-        if image.format == Format::Rgb {
-            self.paint(&mut image.pixels)
-        } else {
-            self.paint_grey(&mut image.pixels)
-        }
-        self.frame += 1;
     }
 
     /// Lists what the pixels show.

@@ -58,8 +58,10 @@ pub struct Scan {
 /// All that one step measures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observation {
-    /// The camera's image.
+    /// The camera's image; of no pixels where nobody asks for colours or brightness.
     pub image: Image,
+    /// The depth image of the same moment ([`Format::Depth`]); nothing where nobody asks for one.
+    pub depth: Option<Image>,
     /// The laser's scan.
     pub scan: Scan,
     /// The bumper: the body touched something during the last step.
@@ -78,11 +80,41 @@ impl Observation {
     pub fn asking_for(format: Format, width_px: usize, height_px: usize, beams: usize) -> Self {
         Self {
             image: Image::of(format, width_px, height_px),
+            depth: None,
             scan: Scan { ranges_m: vec![0.0; beams] },
             contact: false,
             fallen: false,
             odometry: Twist::default(),
             ground: None,
+        }
+    }
+
+    /// Asks for depth too, or for depth alone.
+    #[must_use]
+    pub fn with_depth(mut self, alone: bool) -> Self {
+        let Image { width_px, height_px, format, .. } = self.image;
+        self.depth = Some(Image::of(Format::Depth, width_px, height_px));
+        if alone {
+            self.image = Image::of(format, 0, 0);
+        }
+        self
+    }
+
+    /// The image for who reads this format.
+    #[must_use]
+    pub fn read_as(&self, format: Format) -> &Image {
+        match &self.depth {
+            Some(depth) if format == Format::Depth => depth,
+            _ => &self.image,
+        }
+    }
+
+    /// The image of what there is to see: in colour or grey if somebody asks for that, else the depth image.
+    #[must_use]
+    pub fn sight(&self) -> &Image {
+        match &self.depth {
+            Some(depth) if self.image.pixels.is_empty() => depth,
+            _ => &self.image,
         }
     }
 }

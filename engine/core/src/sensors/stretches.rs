@@ -120,7 +120,7 @@ impl Stretches {
 
 impl Sight<'_> {
     /// The pixels of a row below the horizon.
-    fn floor_of(&self, row: usize) -> (usize, usize) {
+    pub(super) fn floor_of(&self, row: usize) -> (usize, usize) {
         let width = self.pinhole.width_px;
         let at = |pixel: f64| self.floor.at(pixel, row as f64 + 0.5);
         let (left, right) = (at(0.5), at(width as f64 - 0.5));

@@ -77,6 +77,9 @@ fn camera() -> CameraSettings {
         tilt_deg: 42.0,
         noise: 2.0,
         own_body: false,
+        depth: false,
+        depth_noise: 0.005,
+        depth_holes: 0.0,
     }
 }
 

@@ -117,6 +117,9 @@ pub struct CameraSettings {
     pub tilt_deg: f64,
     pub noise: f64,
     pub own_body: bool,
+    pub depth: bool,
+    pub depth_noise: f64,
+    pub depth_holes: f64,
 }
 
 /// The laser and its mount.

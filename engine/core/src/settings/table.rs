@@ -149,6 +149,9 @@ settings! {
     camera.tilt_deg, "degrees", Number(-30.0, 90.0), "How far the camera looks down.";
     camera.noise, "grey levels", Number(0.0, 64.0), "Deviation of the pixel noise.";
     camera.own_body, "", Flag, "Whether the camera sees the robot's own body where that is in its view.";
+    camera.depth, "", Flag, "Whether it is a depth camera too: filters such as `relief` need one.";
+    camera.depth_noise, "1/m", Number(0.0, 1.0), "Deviation of the noise of nearness, one over the distance.";
+    camera.depth_holes, "share", Number(0.0, 1.0), "Share of the pixels at which depth is not measured; beside edges ten times as many.";
     laser.beams, "beams", Whole(3, 1441), "Beams over the field of view, both ends included.";
     laser.field_of_view_deg, "degrees", Number(10.0, 360.0), "From the first beam to the last; 360 looks all round.";
     laser.forward_m, "metres", Number(-1.0, 1.0), "Place of the laser ahead of the robot's centre.";

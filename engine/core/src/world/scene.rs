@@ -102,7 +102,7 @@ pub struct Light {
 impl Light {
     /// Brightness of a surface with the unit normal `normal`: gain * (ambient + (1 - ambient) * max(0, cos)).
     #[must_use]
-    pub(crate) fn on(&self, normal: &Vector3) -> f64 {
+    pub fn on(&self, normal: &Vector3) -> f64 {
         self.gain * (self.ambient + (1.0 - self.ambient) * self.towards.dot(normal).max(0.0))
     }
 }

@@ -37,7 +37,9 @@ pub(super) fn write_page(
             let seed = results[index].run.summary.seed;
             // The page of one seed of many stands in the seed's own folder.
             let own = if results.len() == 1 { logs.to_owned() } else { logs.join(seed.to_string()) };
-            read.push((index, read_back(&own, plan, seed)?));
+            let mut log = read_back(&own, plan, seed)?;
+            log.test.set_out_from(results[index].run.learned.as_ref().map_or(&[], |learned| learned.policy.kept()));
+            read.push((index, log));
         }
     }
     let none = Ledger::off();

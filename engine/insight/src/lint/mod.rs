@@ -5,6 +5,7 @@
 
 mod choice;
 mod exploit;
+mod filters;
 mod finding;
 mod fired;
 mod guards;
@@ -137,6 +138,7 @@ pub fn read(plan: &Plan) -> Vec<Finding> {
     stages::check_stages(plan, &mut findings);
     views::check_views(plan, &mut findings);
     mounts::check_mounts(plan, &mut findings);
+    filters::check_filters(plan, &mut findings);
     findings
 }
 

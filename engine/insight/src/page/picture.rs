@@ -27,6 +27,10 @@ pub(super) fn data_address(pixels: &[u8], size_px: (usize, usize), format: Forma
             let jpeg = JpegEncoder::new_with_quality(&mut bytes, QUALITY);
             (jpeg.write_image(pixels, width, height, ExtendedColorType::L8), "jpeg")
         }
+        Format::Depth => {
+            let (jpeg, greys) = (JpegEncoder::new_with_quality(&mut bytes, QUALITY), greys_of_depth(pixels));
+            (jpeg.write_image(&greys, width, height, ExtendedColorType::L8), "jpeg")
+        }
         Format::Rgb => {
             let jpeg = JpegEncoder::new_with_quality(&mut bytes, QUALITY);
             (jpeg.write_image(pixels, width, height, ExtendedColorType::Rgb8), "jpeg")
@@ -34,6 +38,11 @@ pub(super) fn data_address(pixels: &[u8], size_px: (usize, usize), format: Forma
     };
     written.map_err(|error| failed(&error.to_string()))?;
     Ok(format!("data:image/{kind};base64,{}", base64(&bytes)))
+}
+
+/// Nearness as brightness: white from half a metre on, black where nothing is seen.
+fn greys_of_depth(pixels: &[u8]) -> Vec<u8> {
+    pixels.as_chunks::<2>().0.iter().map(|pixel| pixel[1].saturating_mul(4)).collect()
 }
 
 /// A mask as the bytes of a PNG file.

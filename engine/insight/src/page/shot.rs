@@ -7,7 +7,6 @@ use super::picture::data_address;
 use super::track::MOST_PLAYED;
 use engine::diagnostic::Result;
 use engine::experiment::{Ledger, Phase, Plan, Playback, Recall, SeenView, Snapshot, StepReasons};
-use filter_api::Format;
 
 /// Of the steps behind a value a moment names so many.
 const MOST_TRIES: usize = 8;
@@ -92,7 +91,7 @@ impl ShotMaker<'_> {
         let cycle = playback.cycle();
         let Snapshot { image, views, state } = Snapshot::of(cycle);
         let size_px = (image.width_px, image.height_px);
-        let camera = data_address(&image.pixels, size_px, Format::Rgb)?;
+        let camera = data_address(&image.pixels, size_px, image.format)?;
         let mut stages = vec![StagePicture { name: "camera".to_owned(), picture: camera }];
         for stage in cycle.stages() {
             let picture = data_address(stage.pixels, size_px, stage.filter.writes)?;

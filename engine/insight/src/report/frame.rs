@@ -60,7 +60,7 @@ impl<'a> FramePanel<'a> {
     /// A colour image under a name.
     #[must_use]
     pub fn image(name: &'a str, image: &'a Image) -> Self {
-        Self { name, format: Format::Rgb, pixels: &image.pixels }
+        Self { name, format: image.format, pixels: &image.pixels }
     }
 
     /// The mask that a chain of filters made, 0 or 255.
@@ -74,6 +74,7 @@ impl<'a> FramePanel<'a> {
         match self.format {
             Format::Rgb => format!("{width} × {height} pixels"),
             Format::Grey => "grey levels".to_owned(),
+            Format::Depth => "bright is near".to_owned(),
             Format::Mask => {
                 let set = self.pixels.iter().filter(|pixel| **pixel > 0).count();
                 format!("{:.1} % foreground", set as f64 / self.pixels.len() as f64 * 100.0)
@@ -84,6 +85,8 @@ impl<'a> FramePanel<'a> {
     fn colour(&self, pixel: usize) -> [u8; 3] {
         match self.format {
             Format::Rgb => [self.pixels[3 * pixel], self.pixels[3 * pixel + 1], self.pixels[3 * pixel + 2]],
+            // White from half a metre on.
+            Format::Depth => [self.pixels[2 * pixel + 1].saturating_mul(4); 3],
             Format::Grey | Format::Mask => [self.pixels[pixel]; 3],
         }
     }

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::filter_entry::{FilterEntry, ViewEntry};
 use super::parts::belongs;
 use super::toml_error;
+use crate::markup::{base64, from_base64};
 use engine::diagnostic::{Diagnostic, Result, SourceText};
 use engine::digest::Digest;
 use engine::experiment::Plan;
@@ -24,6 +25,8 @@ const FORMAT: u32 = 2;
 const FORMAT_OF_PARTS: u32 = 3;
 /// The format of a policy of the learner `memory`.
 const FORMAT_OF_MEMORY: u32 = 4;
+/// The format of a policy whose filters keep something.
+const FORMAT_OF_KEPT: u32 = 5;
 
 #[derive(Deserialize)]
 struct PolicyFormat {
@@ -73,6 +76,9 @@ struct PolicyFile {
     /// What answers for states that are not listed, if anything does.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pools: Option<PooledSums>,
+    /// What the filters kept when learning ended, as letters of RFC 4648.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    kept: Option<String>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -139,6 +145,7 @@ fn text_of(
     });
     let file = PolicyFile {
         format: match part.is_empty() {
+            _ if !policy.kept().is_empty() => FORMAT_OF_KEPT,
             _ if policy.temperature().is_some() => FORMAT_OF_MEMORY,
             true => FORMAT,
             false => FORMAT_OF_PARTS,
@@ -156,6 +163,7 @@ fn text_of(
         states: policy.states(),
         temperature: policy.temperature(),
         pools: policy.pools().map(Pools::to_sums),
+        kept: Some(policy.kept()).filter(|kept| !kept.is_empty()).map(base64),
         actions: settings.actions.iter().map(|twist| [twist.linear_m_per_s, twist.angular_rad_per_s]).collect(),
         filter,
         view,
@@ -187,9 +195,9 @@ impl StoredPolicy {
     /// If the file is damaged or of another format.
     pub fn parse(source: &SourceText) -> Result<Self> {
         let format: PolicyFormat = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
-        if !(FORMAT..=FORMAT_OF_MEMORY).contains(&format.format) {
+        if !(FORMAT..=FORMAT_OF_KEPT).contains(&format.format) {
             let message =
-                format!("has format {}, this engine reads formats {FORMAT} to {FORMAT_OF_MEMORY}", format.format);
+                format!("has format {}, this engine reads formats {FORMAT} to {FORMAT_OF_KEPT}", format.format);
             return Err(unfit(source, &message, "learn the behaviour again"));
         }
         let file: PolicyFile = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
@@ -203,7 +211,7 @@ impl StoredPolicy {
         else {
             return Err(unfit(source, "has neither a grid nor views", "learn the behaviour again"));
         };
-        let most = if format.format == FORMAT_OF_MEMORY { MAX_POOLED_STATES } else { MAX_STATES };
+        let most = if format.format >= FORMAT_OF_MEMORY { MAX_POOLED_STATES } else { MAX_STATES };
         if file.states > most || file.actions.is_empty() {
             return Err(unfit(source, "has no actions or too many states", "learn the behaviour again"));
         }
@@ -219,6 +227,11 @@ impl StoredPolicy {
         let policy =
             remembering(Policy::of_states(file.actions.len(), file.states, rows), file.temperature, file.pools)
                 .ok_or_else(|| unfit(source, "has damaged sums or no temperature", "learn the behaviour again"))?;
+        let kept = file.kept.as_deref().map_or(Some(Vec::new()), from_base64);
+        let Some(kept) = kept else {
+            return Err(unfit(source, "has damaged bytes of its filters in 'kept'", "learn the behaviour again"));
+        };
+        let policy = policy.keeping(kept);
         let entries = file.view.first().map_or(file.filter, |view| view.filter.clone());
         Ok(Self {
             behaviour: file.behaviour,

@@ -29,8 +29,18 @@ struct StepReport {
     phase: &'static str,
     #[serde(flatten)]
     reasons: StepReasons,
+    /// What the filters keep at the end of the step, of those that keep something.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    kept: Vec<FilterKept>,
     /// What the robot saw when it chose, and at the end of the step: camera, filters, grid.
     pictures: [String; 2],
+}
+
+/// What a filter keeps, in words.
+#[derive(Serialize)]
+struct FilterKept {
+    filter: &'static str,
+    words: String,
 }
 
 pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
@@ -75,7 +85,8 @@ pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::r
         .write(out, &stems[1])?;
     let pictures = stems.map(|stem| out.join(format!("{stem}.png")).display().to_string());
     let (behaviour, world) = (plan.behaviour.name().to_owned(), plan.worlds.title());
-    let report = StepReport { behaviour, world, seed: *seed, phase: name, reasons, pictures };
+    let kept = playback.cycle().kept_in_words().map(|(filter, words)| FilterKept { filter, words }).collect();
+    let report = StepReport { behaviour, world, seed: *seed, phase: name, reasons, kept, pictures };
     console.json(&report)?;
     print(console, playback.plan(), &report)?;
     Ok(0)
@@ -110,8 +121,9 @@ fn recalling<'a>(plan: &'a Plan, seed: u64, phase: Phase, log: &'a RunLog) -> Re
 /// Camera, each filter, grid.
 fn draw_step(plan: &Plan, playback: &Playback<'_>, title: &str) -> Result<Picture> {
     let cycle = playback.cycle();
-    let image = &cycle.robot().photograph().unwrap_or_else(|| cycle.observation().image.clone());
+    let image = &cycle.robot().photograph().unwrap_or_else(|| cycle.observation().sight().clone());
     let mut panels = vec![FramePanel::image("camera", image)];
+    panels.extend(cycle.observation().depth.iter().map(|depth| FramePanel::image("depth", depth)));
     let stages: Vec<ViewStage<'_>> = cycle.stages().collect();
     let names: Vec<String> = stages.iter().map(ViewStage::name).collect();
     panels.extend(stages.iter().zip(&names).map(|(stage, name)| FramePanel {
@@ -165,6 +177,9 @@ fn print(console: &mut Console, plan: &Plan, report: &StepReport) -> std::result
     if plan.settings.has_parts() {
         let (from, to) = (&reasons.state.text, &reasons.next_state.text);
         console.line(&format!("           {from}\n           {to}"))?;
+    }
+    for kept in &report.kept {
+        console.line(&format!("filter:    {}: {}", kept.filter, kept.words))?;
     }
     let [x_m, y_m, yaw_rad] = reasons.pose;
     let touched = if reasons.contact { ", touching something" } else { "" };

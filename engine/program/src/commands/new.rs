@@ -22,8 +22,10 @@ const TEMPLATE: &[(&str, &str)] = &[
     ("filter-api/filter.h", include_str!("../../../../plugins/filter-api/filter.h")),
     ("filter-api/src/abi.rs", include_str!("../../../../plugins/filter-api/src/abi.rs")),
     ("filter-api/src/export.rs", include_str!("../../../../plugins/filter-api/src/export.rs")),
+    ("filter-api/src/export/kept.rs", include_str!("../../../../plugins/filter-api/src/export/kept.rs")),
     ("filter-api/src/frame.rs", include_str!("../../../../plugins/filter-api/src/frame.rs")),
     ("filter-api/src/lib.rs", include_str!("../../../../plugins/filter-api/src/lib.rs")),
+    ("filter-api/src/told.rs", include_str!("../../../../plugins/filter-api/src/told.rs")),
 ];
 
 pub(crate) fn run(arguments: &NewArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {

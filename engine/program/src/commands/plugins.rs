@@ -194,6 +194,7 @@ fn word(format: Format) -> &'static str {
         Format::Rgb => "colour",
         Format::Grey => "grey",
         Format::Mask => "mask",
+        Format::Depth => "depth",
     }
 }
 

@@ -36,6 +36,13 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          may be rare and are not reported. Check the threshold, and that the world has what the guard is about.",
     ),
     (
+        "W-LOOK-ALIKE",
+        Kind::Input,
+        "Something that the robot must see looks like the floor to the filter, or the filter has no floor to compare with.\n\
+         Told of `floor` with a memory where a face has a grey of the floor in the world's light, of `chroma` where it has its \
+         colour, and of `relief` where the camera shows no ground within its reach. Another light, colour or tilt helps.",
+    ),
+    (
         "W-LOOP",
         Kind::Input,
         "A function goes over the beams of the laser one by one, in every step.\n\

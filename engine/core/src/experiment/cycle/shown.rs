@@ -67,6 +67,11 @@ impl<R: Robot> Cycle<R> {
         self.eyes[0].stages()
     }
 
+    /// What the script's own filters keep, in words: the filter's name, and what it says.
+    pub fn kept_in_words(&self) -> impl Iterator<Item = (&'static str, String)> {
+        self.eyes[0].words()
+    }
+
     /// The map that makes the script's own states.
     #[must_use]
     pub fn state_map(&self) -> &dyn StateMap {

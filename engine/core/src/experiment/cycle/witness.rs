@@ -74,13 +74,15 @@ impl Witness {
 }
 
 impl<R: Robot> Cycle<R> {
-    /// A cycle beside which the rules of other plans judge along.
+    /// A cycle beside which the rules of other plans judge along, and whose eyes go on from what others kept.
     ///
     /// # Errors
     /// As [`Cycle::new`], and if the other rules read what this robot does not have.
-    pub(in crate::experiment) fn watched(plan: &Plan, robot: R, others: &[&Plan]) -> Result<Self> {
+    pub(in crate::experiment) fn watched(plan: &Plan, robot: R, others: &[&Plan], kept: &[u8]) -> Result<Self> {
+        let mut eyes = plan.eyes()?;
+        eyes.go_on_from(kept)?;
         let witnesses = others.iter().map(|rules| Witness::new(rules, plan)).collect::<Result<_>>()?;
-        Self::before(plan, robot, plan.eyes()?, Vec::new(), witnesses)
+        Self::before(plan, robot, eyes, Vec::new(), witnesses)
     }
 
     /// What the witness that was called first has said; it looks on no more.

@@ -27,6 +27,8 @@ pub struct Ledger {
     bytes: Vec<u8>,
     most: usize,
     steps: u64,
+    /// What the filters kept before the first step; empty if they began anew, or keep nothing.
+    kept: Vec<u8>,
 }
 
 /// The records of one leg.
@@ -65,7 +67,7 @@ impl Ledger {
     pub fn new(plan: &Plan, steps: u64) -> Self {
         let shape = RecordShape::of(plan);
         let most = steps.min(MOST_STEPS) as usize * shape.bytes();
-        Self { earlier: Vec::new(), first: 0, shape, bytes: Vec::with_capacity(most), most, steps: 0 }
+        Self { earlier: Vec::new(), first: 0, shape, bytes: Vec::with_capacity(most), most, steps: 0, kept: Vec::new() }
     }
 
     /// A ledger that keeps nothing.
@@ -86,7 +88,18 @@ impl Ledger {
     }
 
     fn from_leg(LedgerLeg { shape, bytes, steps }: LedgerLeg) -> Self {
-        Self { earlier: Vec::new(), first: 0, most: bytes.len(), shape, bytes, steps }
+        Self { earlier: Vec::new(), first: 0, most: bytes.len(), shape, bytes, steps, kept: Vec::new() }
+    }
+
+    /// Says what the filters kept before the first step, such as what a policy kept before its test.
+    pub fn set_out_from(&mut self, kept: &[u8]) {
+        self.kept = kept.to_vec();
+    }
+
+    /// What the filters kept before the first step; empty if they began anew, or keep nothing.
+    #[must_use]
+    pub fn kept(&self) -> &[u8] {
+        &self.kept
     }
 
     /// From here on under another script, with room for `steps` more steps; none if the leg before was too long to be kept.

@@ -2,6 +2,8 @@
 
 use dispatch::{Processor, compiled_for_each_processor};
 
+use filter_api::NEARNESS_ONE;
+
 use super::program::{Asked, Comparison, Number, Program, Sum, Truth};
 
 /// Pixels of a block: its numbers stay in the nearest cache.
@@ -31,7 +33,12 @@ impl Kernel {
         Self { program, processor, colours: Box::new([[0.0; LANES]; 3]), numbers, truths }
     }
 
-    /// Writes 255 where the condition holds, else 0; `pixels` has three bytes for each one of `out`.
+    /// Whether its frames hold nearness.
+    pub(super) fn looks_at_depth(&self) -> bool {
+        self.program.looks_at_depth()
+    }
+
+    /// Writes 255 where the condition holds, else 0; `pixels` has three bytes for each one of `out`, or two of nearness.
     pub(super) fn mark(&mut self, pixels: &[u8], out: &mut [u8]) {
         mark(self.processor, self, pixels, out);
     }
@@ -41,8 +48,10 @@ compiled_for_each_processor! {
     /// Marks block by block; what the end of the last block computes is not used.
     fn mark<'a>(kernel: &'a mut Kernel, pixels: &'a [u8], out: &'a mut [u8]) {
         let Kernel { program, colours, numbers, truths, .. } = kernel;
-        for (pixels, out) in pixels.chunks(3 * LANES).zip(out.chunks_mut(LANES)) {
-            split(pixels, colours);
+        let depth = program.looks_at_depth();
+        let bytes = if depth { 2 } else { 3 };
+        for (pixels, out) in pixels.chunks(bytes * LANES).zip(out.chunks_mut(LANES)) {
+            if depth { nearness(pixels, &mut colours[0]) } else { split(pixels, colours) }
             for (place, number) in program.numbers.iter().enumerate() {
                 let (before, rest) = numbers.split_at_mut(place);
                 if let Some(to) = rest.first_mut() {
@@ -71,11 +80,20 @@ fn split(pixels: &[u8], [red, green, blue]: &mut [Numbers; 3]) {
     }
 }
 
+/// Nearness in 1/m: exact, since it is counted in powers of two.
+#[inline(always)]
+fn nearness(pixels: &[u8], to: &mut Numbers) {
+    for (pixel, to) in pixels.as_chunks::<2>().0.iter().zip(to) {
+        *to = f32::from(u16::from_le_bytes(*pixel)) / f32::from(NEARNESS_ONE);
+    }
+}
+
 #[inline(always)]
 fn compute(number: &Number, colours: &[Numbers; 3], before: &[Numbers], to: &mut Numbers) {
     match *number {
         Number::Constant(_) => {}
-        Number::Pixel(Asked::Red) => to.copy_from_slice(&colours[0]),
+        // Of a depth frame there is nothing else.
+        Number::Pixel(Asked::Red | Asked::Nearness) => to.copy_from_slice(&colours[0]),
         Number::Pixel(Asked::Green) => to.copy_from_slice(&colours[1]),
         Number::Pixel(Asked::Blue) => to.copy_from_slice(&colours[2]),
         Number::Pixel(Asked::Hue) => of_colours(colours, to, hue_deg),

@@ -29,12 +29,15 @@ pub(super) const DESCRIPTOR: Descriptor = Descriptor {
     parameters: &[],
 };
 
+/// What the filter says of itself where its condition looks at depth.
+pub(super) const OF_DEPTH: Descriptor = Descriptor { reads: &[Format::Depth], ..DESCRIPTOR };
+
 /// A condition to begin with; a script always writes its own.
 pub const EXAMPLE: &str = "r > 1.5 * g && r > 60";
 
 /// What a condition may say, in words.
-pub const LANGUAGE: &str = "A condition over a pixel: r, g, b, value and brightness (0 to 255), hue_deg (0 to 360), saturation (0 to 1), \
-     numbers, + - * /, abs, min, max, < <= > >= == !=, && || ! and parentheses.";
+pub const LANGUAGE: &str = "A condition over a pixel: r, g, b, value and brightness (0 to 255), hue_deg (0 to 360), saturation (0 to 1); or, of a depth \
+     camera, nearness (1/m, 0 where nothing is seen); numbers, + - * /, abs, min, max, < <= > >= == !=, && || ! and parentheses.";
 
 /// A mistake in a condition.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -66,6 +69,11 @@ pub(super) fn check(condition: &str) -> std::result::Result<(), ConditionError> 
     parser::parse(condition).map(|_| ())
 }
 
+/// Whether a condition without a mistake looks at depth.
+pub(super) fn looks_at_depth(condition: &str) -> bool {
+    parser::parse(condition).is_ok_and(|program| program.looks_at_depth())
+}
+
 /// A filter that marks where a condition holds.
 ///
 /// # Errors
@@ -78,8 +86,9 @@ impl Running for Where {
     fn process(&mut self, input: Frame<'_>, mut output: FrameMut<'_>) -> Result<()> {
         let fail = |FilterError(words)| failed("E-FILTER", DESCRIPTOR.name, &words);
         output.check_same_size(&input).map_err(fail)?;
-        if input.format() != Format::Rgb {
-            return Err(fail(FilterError("it reads colour frames only".to_owned())));
+        let wanted = if self.0.looks_at_depth() { Format::Depth } else { Format::Rgb };
+        if input.format() != wanted {
+            return Err(fail(FilterError(format!("its condition looks at {wanted:?} frames"))));
         }
         self.0.mark(input.pixels(), output.pixels());
         Ok(())

@@ -65,6 +65,11 @@ pub(super) fn parse(text: &str) -> Parsed<Program> {
     }
     parser.truth(&whole)?;
     let mut program = parser.program;
+    if program.looks_at_depth() && program.looks_at_colour() {
+        let message = "the condition looks at colour and at nearness: those are two images".to_owned();
+        let help = "make two views, one that looks at colour and one at nearness";
+        return Err(ConditionError::new(message, "both in one", help, 0..text.len()));
+    }
     program.result = whole.place;
     if program.size() > MOST {
         let message = format!("the condition computes more than {MOST} numbers and truth values for each pixel");

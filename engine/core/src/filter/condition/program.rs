@@ -10,16 +10,18 @@ pub(super) enum Asked {
     Saturation,
     Value,
     Brightness,
+    Nearness,
 }
 
 /// The names of a condition, with how people say them elsewhere.
-pub(super) const ASKED: [(&str, Asked, &[&str]); 7] = [
+pub(super) const ASKED: [(&str, Asked, &[&str]); 8] = [
     ("r", Asked::Red, &["red", "R"]),
     ("g", Asked::Green, &["green", "G"]),
     ("b", Asked::Blue, &["blue", "B"]),
     ("hue_deg", Asked::Hue, &["h", "hue", "H"]),
     ("saturation", Asked::Saturation, &["s", "sat", "S"]),
     ("value", Asked::Value, &["v", "val", "V", "max_rgb"]),
+    ("nearness", Asked::Nearness, &["depth", "distance", "z", "range", "disparity"]),
     ("brightness", Asked::Brightness, &["luma", "grey", "gray", "luminance", "intensity", "y"]),
 ];
 
@@ -80,6 +82,16 @@ impl Program {
     /// The place of a truth value.
     pub(super) fn truth(&mut self, truth: Truth) -> usize {
         place(&mut self.truths, truth)
+    }
+
+    /// Whether it asks for nearness, which a depth image has.
+    pub(super) fn looks_at_depth(&self) -> bool {
+        self.numbers.contains(&Number::Pixel(Asked::Nearness))
+    }
+
+    /// Whether it asks for a colour.
+    pub(super) fn looks_at_colour(&self) -> bool {
+        self.numbers.iter().any(|number| matches!(number, Number::Pixel(asked) if *asked != Asked::Nearness))
     }
 
     /// How much is computed for each pixel.

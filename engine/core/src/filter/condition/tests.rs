@@ -105,6 +105,20 @@ fn hostile_conditions_are_refused() {
     assert!(refused(&long).contains("more than 64 numbers"));
 }
 
+#[test]
+fn nearness_is_compared_in_one_over_metres_and_mixes_with_no_colour() {
+    let mut filter = create("nearness > 0.5").unwrap();
+    // 2 m, a little nearer, nothing seen.
+    let pixels: Vec<u8> = [4096_u16, 4097, 0].iter().flat_map(|nearness| nearness.to_le_bytes()).collect();
+    let mut out = [7; 3];
+    let input = Frame::new(3, 1, Format::Depth, &pixels).unwrap();
+    filter.process(input, FrameMut::new(3, 1, Format::Mask, &mut out).unwrap()).unwrap();
+    assert_eq!(out, [0, 255, 0]);
+    let mixed = parse("nearness > 0.5 && r > 60").unwrap_err();
+    assert_eq!(mixed.message, "the condition looks at colour and at nearness: those are two images");
+    assert_eq!(parse("depth < 2").unwrap_err().help, "did you mean nearness?");
+}
+
 /// A number by its definition, one pixel at a time.
 fn number(program: &Program, place: usize, pixel: [i32; 3]) -> f32 {
     let [red, green, blue] = pixel;
@@ -112,6 +126,8 @@ fn number(program: &Program, place: usize, pixel: [i32; 3]) -> f32 {
     let of = |place: usize| number(program, place, pixel);
     match program.numbers[place] {
         Number::Constant(value) => value,
+        // Of a depth frame; the conditions here look at colours.
+        Number::Pixel(Asked::Nearness) => f32::NAN,
         Number::Pixel(Asked::Red) => red as f32,
         Number::Pixel(Asked::Green) => green as f32,
         Number::Pixel(Asked::Blue) => blue as f32,

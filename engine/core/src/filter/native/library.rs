@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use filter_api::abi::{ABI_VERSION, PLUGIN_SYMBOL, RawFrame, RawParameter, RawPlugin};
+use filter_api::abi::{ABI_VERSION, OLDEST_VERSION, PLUGIN_SYMBOL, RawFirst, RawFrame, RawParameter, RawPlugin};
 use object::{Architecture, BinaryFormat, Object, ObjectSegment, ObjectSymbol};
 
 use crate::diagnostic::{Diagnostic, Result, printable};
@@ -92,11 +92,12 @@ fn is_plugin(format: BinaryFormat, name: object::read::Result<&str>) -> bool {
 fn wrong_version(head: &[u8], symbol_bytes: u64) -> Option<(String, String)> {
     let numbers: Vec<u32> = head.as_chunks::<4>().0.iter().map(|bytes| u32::from_ne_bytes(*bytes)).collect();
     let [version, plugin, parameter, frame] = numbers[..] else { return None };
-    if version != ABI_VERSION {
+    if !(OLDEST_VERSION..=ABI_VERSION).contains(&version) {
         let what = format!("was built for version {version} of the filter contract, this engine has {ABI_VERSION}");
         return Some((what, "build it again with the filter-api (or filter.h) that belongs to this engine".to_owned()));
     }
-    let wanted = [size_of::<RawPlugin>(), size_of::<RawParameter>(), size_of::<RawFrame>()];
+    let plugin_bytes = if version == OLDEST_VERSION { size_of::<RawFirst>() } else { size_of::<RawPlugin>() };
+    let wanted = [plugin_bytes, size_of::<RawParameter>(), size_of::<RawFrame>()];
     let found = [plugin, parameter, frame].map(|bytes| bytes as usize);
     // Only ELF states the size of a symbol.
     if found == wanted && (symbol_bytes == 0 || symbol_bytes >= wanted[0] as u64) {
@@ -150,14 +151,17 @@ mod tests {
     fn another_version_or_size_names_the_cure() {
         let head = |numbers: [u32; 4]| numbers.map(u32::to_ne_bytes).concat();
         let sizes = [size_of::<RawPlugin>(), size_of::<RawParameter>(), size_of::<RawFrame>()].map(|size| size as u32);
-        assert_eq!(wrong_version(&head([1, sizes[0], sizes[1], sizes[2]]), 0), None);
-        for version in [0, 2, 999] {
+        assert_eq!(wrong_version(&head([2, sizes[0], sizes[1], sizes[2]]), 0), None);
+        // A plugin of the first version is shorter.
+        assert!(wrong_version(&head([1, sizes[0], sizes[1], sizes[2]]), 0).is_some());
+        assert_eq!(wrong_version(&head([1, size_of::<RawFirst>() as u32, sizes[1], sizes[2]]), 0), None);
+        for version in [0, 3, 999] {
             let (what, _) = wrong_version(&head([version, sizes[0], sizes[1], sizes[2]]), 0).unwrap();
             assert!(what.contains(&format!("version {version} ")), "{what}");
         }
         for plugin in [0, u32::MAX] {
-            assert!(wrong_version(&head([1, plugin, sizes[1], sizes[2]]), 0).unwrap().0.contains("structs of"));
+            assert!(wrong_version(&head([2, plugin, sizes[1], sizes[2]]), 0).unwrap().0.contains("structs of"));
         }
-        assert!(wrong_version(&head([1, sizes[0], sizes[1], sizes[2]]), 8).is_some());
+        assert!(wrong_version(&head([2, sizes[0], sizes[1], sizes[2]]), 8).is_some());
     }
 }

@@ -9,9 +9,10 @@ use std::path::Path;
 use std::ptr::null_mut;
 
 use filter_api::abi::{
-    MESSAGE_BYTES, OK, PANIC, PLUGIN_SYMBOL, RawDestroy, RawFrame, RawParameter, RawPlugin, RawProcess, RawText,
+    MESSAGE_BYTES, OK, OLDEST_VERSION, PANIC, PLUGIN_SYMBOL, RawDestroy, RawFirst, RawFrame, RawMount, RawMoved,
+    RawParameter, RawPlugin, RawProcess, RawText,
 };
-use filter_api::{Descriptor, Format, Frame, FrameMut};
+use filter_api::{Descriptor, Format, Frame, FrameMut, Mount, Moved};
 use libloading::Library;
 
 use super::library;
@@ -43,7 +44,11 @@ pub(super) fn open(path: &Path, trust: &Trust) -> Result<Entry> {
 
 /// A plugin of a library, which stays loaded until the program ends.
 #[derive(Clone, Copy)]
-pub(super) struct LoadedLibrary(&'static RawPlugin);
+pub(super) struct LoadedLibrary {
+    first: &'static RawFirst,
+    /// The whole plugin; nothing of a library of the first version of the contract.
+    whole: Option<&'static RawPlugin>,
+}
 
 // SAFETY: it points at constants of a library that is never unloaded.
 unsafe impl Send for LoadedLibrary {}
@@ -70,14 +75,17 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<LoadedLibrary> {
     // Never unloaded: threads, statics and destructors of a library outlive its last filter.
     let library: &'static Library = Box::leak(Box::new(library));
     // SAFETY: `library::read` found a symbol of this name, of the size and version of a `RawPlugin`.
-    let symbol = unsafe { library.get::<*const RawPlugin>(PLUGIN_SYMBOL.as_bytes()) }.map_err(|error| wrong(&error))?;
+    let symbol = unsafe { library.get::<*const RawFirst>(PLUGIN_SYMBOL.as_bytes()) }.map_err(|error| wrong(&error))?;
     // SAFETY: as above; the static is constant and never unloaded.
-    Ok(LoadedLibrary(unsafe { &**symbol }))
+    let first = unsafe { &**symbol };
+    // SAFETY: as above; a plugin of a later version is a whole one.
+    let whole = (first.abi_version > OLDEST_VERSION).then(|| unsafe { &*symbol.cast::<RawPlugin>() });
+    Ok(LoadedLibrary { first, whole })
 }
 
 /// Copies a descriptor out of the library.
 pub(super) fn describe(plugin: LoadedLibrary, path: &Path) -> Result<DescribedFilter> {
-    let raw = plugin.0;
+    let raw = plugin.first;
     let count = raw.parameter_count as usize;
     let functions = raw.create.is_some() && raw.process.is_some() && raw.destroy.is_some();
     if !functions || count > MOST_PARAMETERS || (count > 0 && raw.parameters.is_null()) {
@@ -114,6 +122,9 @@ fn text(raw: RawText) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
+/// The most that a filter may keep, bytes.
+const MOST_KEPT_BYTES: usize = 1 << 20;
+
 /// Why a call of a library did not succeed.
 #[derive(Debug, PartialEq)]
 pub(super) struct Failure {
@@ -127,7 +138,10 @@ pub(super) struct Failure {
 pub(super) struct Native {
     process: RawProcess,
     destroy: RawDestroy,
+    /// What came with the second version of the contract.
+    whole: Option<&'static RawPlugin>,
     instance: *mut c_void,
+    keeps: usize,
 }
 
 // SAFETY: the law lets an instance move between threads; it never runs on two at once, since `process` borrows it.
@@ -136,7 +150,8 @@ unsafe impl Send for Native {}
 impl Native {
     /// Creates an instance.
     pub(super) fn new(plugin: LoadedLibrary, values: &[f64]) -> std::result::Result<Self, Failure> {
-        let (Some(create), Some(process), Some(destroy)) = (plugin.0.create, plugin.0.process, plugin.0.destroy) else {
+        let LoadedLibrary { first, whole } = plugin;
+        let (Some(create), Some(process), Some(destroy)) = (first.create, first.process, first.destroy) else {
             return Err(Failure { panicked: false, words: "it has no functions".to_owned() });
         };
         let mut instance = null_mut();
@@ -144,7 +159,63 @@ impl Native {
         // SAFETY: the arguments are as the law says, and live through the call.
         let status = unsafe { create(values.as_ptr(), values.len() as u32, &raw mut instance, message.pointer()) };
         message.outcome(status)?;
-        Ok(Self { process, destroy, instance })
+        let mut native = Self { process, destroy, whole, instance, keeps: 0 };
+        if let Some(keeps) = whole.and_then(|whole| whole.keeps) {
+            // SAFETY: the instance is the library's own.
+            native.keeps = unsafe { keeps(instance) } as usize;
+        }
+        if native.keeps > MOST_KEPT_BYTES {
+            let words = format!("it wants to keep {} bytes; a filter may keep {MOST_KEPT_BYTES}", native.keeps);
+            return Err(Failure { panicked: false, words });
+        }
+        Ok(native)
+    }
+
+    /// How many bytes it keeps.
+    pub(super) fn keeps(&self) -> usize {
+        self.keeps
+    }
+
+    /// Tells it how the camera is mounted.
+    pub(super) fn mount(&mut self, mount: &Mount) -> std::result::Result<(), Failure> {
+        let Some(function) = self.whole.and_then(|whole| whole.mount) else { return Ok(()) };
+        let Mount { focal_px, fisheye, forward_m, height_m, tilt_sin, tilt_cos } = *mount;
+        let raw = RawMount { focal_px, forward_m, height_m, tilt_sin, tilt_cos, fisheye: fisheye.into() };
+        let mut message = ForeignText::default();
+        // SAFETY: the instance is the library's own; the arguments live through the call.
+        let status = unsafe { function(self.instance, &raw const raw, message.pointer()) };
+        message.outcome(status)
+    }
+
+    /// Tells it how the robot moved.
+    pub(super) fn moved(&mut self, moved: &Moved) {
+        if let Some(function) = self.whole.and_then(|whole| whole.moved) {
+            let Moved { driven_m, turned_rad, jumped } = *moved;
+            let raw = RawMoved { driven_m, turned_rad, jumped: jumped.into() };
+            // SAFETY: as in `mount`.
+            unsafe { function(self.instance, &raw const raw) }
+        }
+    }
+
+    /// Writes what it keeps; `kept` has as many bytes as it keeps, or nothing is written.
+    pub(super) fn save(&mut self, kept: &mut [u8]) {
+        if let Some(function) = self.whole.and_then(|whole| whole.save).filter(|_| kept.len() == self.keeps) {
+            // SAFETY: the instance is the library's own; there are as many bytes as it said.
+            unsafe { function(self.instance, kept.as_mut_ptr()) }
+        }
+    }
+
+    /// Lets it go on from what another one kept.
+    pub(super) fn load(&mut self, kept: &[u8]) -> std::result::Result<(), Failure> {
+        if kept.len() != self.keeps {
+            let words = format!("it keeps {} bytes, and is given {}", self.keeps, kept.len());
+            return Err(Failure { panicked: false, words });
+        }
+        let Some(function) = self.whole.and_then(|whole| whole.load) else { return Ok(()) };
+        let mut message = ForeignText::default();
+        // SAFETY: as in `save`.
+        let status = unsafe { function(self.instance, kept.as_ptr(), kept.len() as u32, message.pointer()) };
+        message.outcome(status)
     }
 
     /// Fills `output` from `input`, which is as large.
@@ -177,7 +248,38 @@ struct InProcess {
 impl Running for InProcess {
     fn process(&mut self, input: Frame<'_>, output: FrameMut<'_>) -> Result<()> {
         check_frames(self.descriptor, &input, &output)?;
-        self.native.process(input, output).map_err(|Failure { panicked, words }| {
+        let done = self.native.process(input, output);
+        self.told(done)
+    }
+
+    fn mount(&mut self, mount: &Mount) -> Result<()> {
+        let done = self.native.mount(mount);
+        self.told(done)
+    }
+
+    fn moved(&mut self, moved: &Moved) -> Result<()> {
+        self.native.moved(moved);
+        Ok(())
+    }
+
+    fn keeps(&self) -> usize {
+        self.native.keeps()
+    }
+
+    fn save(&mut self, kept: &mut [u8]) -> Result<()> {
+        self.native.save(kept);
+        Ok(())
+    }
+
+    fn load(&mut self, kept: &[u8]) -> Result<()> {
+        let done = self.native.load(kept);
+        self.told(done)
+    }
+}
+
+impl InProcess {
+    fn told(&self, done: std::result::Result<(), Failure>) -> Result<()> {
+        done.map_err(|Failure { panicked, words }| {
             failed(if panicked { "E-FILTER-CRASH" } else { "E-FILTER" }, self.descriptor.name, &words)
         })
     }

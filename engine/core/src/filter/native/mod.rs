@@ -9,6 +9,8 @@ mod loaded;
 #[cfg(feature = "native-filters")]
 mod wire;
 #[cfg(feature = "native-filters")]
+mod wire_told;
+#[cfg(feature = "native-filters")]
 mod worker;
 
 #[cfg(not(feature = "native-filters"))]

@@ -5,19 +5,32 @@
 
 use std::io::{Error, ErrorKind, Read, Result, Write};
 
-use filter_api::{Format, Frame, FrameMut};
+use filter_api::{Format, Frame, FrameMut, Mount, Moved};
 
-use super::loaded::Failure;
+use super::loaded::{Failure, Native};
+use super::wire_told::{read_kept, read_mount, read_moved, write_mount, write_moved};
 
 /// The longest payload: a colour frame of 50 megapixels.
 const LONGEST_PAYLOAD_BYTES: usize = 150_000_000;
 const CREATE: u8 = 1;
 const PROCESS: u8 = 2;
+const MOUNT: u8 = 3;
+const MOVED: u8 = 4;
+const SAVE: u8 = 5;
+const LOAD: u8 = 6;
 
 /// What the host asks for.
 pub(super) enum Request<'a> {
-    /// An instance with these values.
+    /// An instance with these values; the reply says how many bytes it keeps.
     Create(&'a [f64]),
+    /// To hear how the camera is mounted.
+    Mount(&'a Mount),
+    /// To hear how the robot moved.
+    Moved(&'a Moved),
+    /// What it keeps.
+    Save,
+    /// To go on from this.
+    Load(&'a [u8]),
     /// A frame made from a frame.
     Process {
         /// The frame to read.
@@ -46,6 +59,14 @@ pub(super) fn write_request(to: &mut impl Write, request: &Request<'_>) -> Resul
             for value in *values {
                 to.write_all(&value.to_le_bytes())?;
             }
+        }
+        Request::Mount(mount) => write_mount(to, MOUNT, mount)?,
+        Request::Moved(moved) => write_moved(to, MOVED, moved)?,
+        Request::Save => to.write_all(&[SAVE])?,
+        Request::Load(kept) => {
+            to.write_all(&[LOAD])?;
+            to.write_all(&(kept.len() as u32).to_le_bytes())?;
+            to.write_all(kept)?;
         }
         Request::Process { input, writes } => {
             to.write_all(&[PROCESS])?;
@@ -90,12 +111,11 @@ pub(super) fn read_reply(from: &mut impl Read) -> Result<Reply> {
 /// What a filter did with a call.
 type Outcome<T> = std::result::Result<T, Failure>;
 
-/// Answers requests until the host closes the channel. `create` makes an instance from its values: a function that fills one
-/// frame from another of the same size.
-pub(super) fn serve<Instance: FnMut(Frame<'_>, FrameMut<'_>) -> Outcome<()>>(
+/// Answers requests until the host closes the channel. `create` makes an instance from its values.
+pub(super) fn serve(
     from: &mut impl Read,
     to: &mut impl Write,
-    create: impl Fn(&[f64]) -> Outcome<Instance>,
+    create: impl Fn(&[f64]) -> Outcome<Native>,
 ) -> Result<()> {
     let mut instance = None;
     let (mut input, mut output, mut frames) = (Vec::new(), Vec::new(), 0_u8);
@@ -110,11 +130,22 @@ pub(super) fn serve<Instance: FnMut(Frame<'_>, FrameMut<'_>) -> Outcome<()>>(
                 let count = read_number(from)?;
                 let values =
                     (0..count).map(|_| Ok(f64::from_le_bytes(read_array(from)?))).collect::<Result<Vec<_>>>()?;
-                create(&values).map(|made| {
-                    instance = Some(made);
-                    Vec::new()
-                })
+                create(&values).map(|made| (made.keeps() as u32, instance = Some(made)).0.to_le_bytes().to_vec())
             }
+            (MOUNT, Some(instance)) => {
+                let mount = read_mount(from)?;
+                instance.mount(&mount).map(|()| Vec::new())
+            }
+            (MOVED, Some(instance)) => {
+                instance.moved(&read_moved(from)?);
+                Ok(Vec::new())
+            }
+            (SAVE, Some(instance)) => {
+                let mut kept = vec![0; instance.keeps()];
+                instance.save(&mut kept);
+                Ok(kept)
+            }
+            (LOAD, Some(instance)) => instance.load(&read_kept(from)?).map(|()| Vec::new()),
             (PROCESS, Some(instance)) => {
                 frames = frames.wrapping_add(1);
                 // What a filter leaves out must not look the same twice: the law says that it fills every pixel.
@@ -134,7 +165,7 @@ pub(super) fn serve<Instance: FnMut(Frame<'_>, FrameMut<'_>) -> Outcome<()>>(
 
 fn process(
     from: &mut impl Read,
-    instance: &mut impl FnMut(Frame<'_>, FrameMut<'_>) -> Outcome<()>,
+    instance: &mut Native,
     input: &mut Vec<u8>,
     output: &mut Vec<u8>,
 ) -> Result<Outcome<()>> {
@@ -149,16 +180,16 @@ fn process(
     from.read_exact(input)?;
     let frame = Frame::new(width, height, reads, input).map_err(|error| invalid(error.0))?;
     let to = FrameMut::new(width, height, writes, output).map_err(|error| invalid(error.0))?;
-    Ok(instance(frame, to))
+    Ok(instance.process(frame, to))
 }
 
-fn read_array<const N: usize>(from: &mut impl Read) -> Result<[u8; N]> {
+pub(super) fn read_array<const N: usize>(from: &mut impl Read) -> Result<[u8; N]> {
     let mut bytes = [0; N];
     from.read_exact(&mut bytes)?;
     Ok(bytes)
 }
 
-fn read_number(from: &mut impl Read) -> Result<usize> {
+pub(super) fn read_number(from: &mut impl Read) -> Result<usize> {
     Ok(u32::from_le_bytes(read_array(from)?) as usize)
 }
 

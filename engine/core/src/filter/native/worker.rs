@@ -8,14 +8,14 @@ use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
-use filter_api::{Descriptor, Frame, FrameMut};
+use filter_api::{Descriptor, Frame, FrameMut, Mount, Moved};
 
 use super::wire::{self, Reply, Request, read_reply, write_reply, write_request};
 use super::{library, loaded};
 use crate::diagnostic::{Diagnostic, Result, printable};
 use crate::filter::described::{DescribedFilter, check_frames};
 use crate::filter::entry::Entry;
-use crate::filter::running::{Running, failed, refused};
+use crate::filter::running::{Running, failed, refused, wrong_length};
 use crate::filter::trust::Trust;
 
 /// How long a library may take to load, or to create an instance.
@@ -35,8 +35,9 @@ pub(super) fn open(path: &Path, trust: &Trust, program: &Path) -> Result<Entry> 
     let descriptor = described.check("E-NATIVE-ABI", path)?;
     let name = descriptor.name;
     let create = move |values: &[f64]| -> Result<Box<dyn Running>> {
-        let worker = launch.create(name, values)?;
-        Ok(Box::new(Isolated { descriptor, launch: launch.clone(), values: values.to_vec(), worker, frames: 0 }))
+        let (worker, keeps) = launch.create(name, values)?;
+        let (launch, values) = (launch.clone(), values.to_vec());
+        Ok(Box::new(Isolated { descriptor, launch, values, mount: None, worker, keeps, frames: 0 }))
     };
     Ok(Entry::native(descriptor, path, sha256, Box::new(create)))
 }
@@ -72,11 +73,14 @@ impl Launch {
         Ok((worker, described))
     }
 
-    /// Starts a worker and creates its instance.
-    fn create(&self, name: &str, values: &[f64]) -> Result<Worker> {
+    /// Starts a worker and creates its instance; how many bytes that keeps.
+    fn create(&self, name: &str, values: &[f64]) -> Result<(Worker, usize)> {
         let (mut worker, _) = self.start()?;
         match worker.ask(&Request::Create(values), START) {
-            Ok(Reply::Done(_)) => Ok(worker),
+            Ok(Reply::Done(keeps)) => {
+                let keeps = keeps.first_chunk().map_or(0, |bytes| u32::from_le_bytes(*bytes));
+                Ok((worker, keeps as usize))
+            }
             Ok(Reply::Failed(words)) => Err(refused(&words)),
             Ok(Reply::Panicked(words)) | Err(words) => Err(failed("E-FILTER-CRASH", name, &words)),
         }
@@ -88,32 +92,72 @@ struct Isolated {
     descriptor: &'static Descriptor,
     launch: Launch,
     values: Vec<f64>,
+    mount: Option<Mount>,
     worker: Worker,
+    keeps: usize,
     frames: u64,
+}
+
+impl Isolated {
+    /// The payload of the reply to a request.
+    fn ask(&mut self, request: &Request<'_>) -> Result<Vec<u8>> {
+        let (index, name) = (self.frames, self.descriptor.name);
+        let crashed = |why: &str| failed("E-FILTER-CRASH", name, &format!("frame {index}: {why}"));
+        let mut reply = self.worker.ask(request, FRAME);
+        if reply.is_err() && !self.worker.late && self.keeps == 0 {
+            // The same frame and parameters give the same output, so nothing is lost by asking another worker.
+            self.worker = self.launch.create(name, &self.values)?.0;
+            if let Some(mount) = &self.mount {
+                self.worker.ask(&Request::Mount(mount), START).map_err(|why| crashed(&why))?;
+            }
+            reply = self.worker.ask(request, FRAME);
+        }
+        match reply {
+            Ok(Reply::Done(payload)) => Ok(payload),
+            Ok(Reply::Failed(words)) => Err(failed("E-FILTER", name, &words)),
+            Ok(Reply::Panicked(words)) | Err(words) => Err(crashed(&words)),
+        }
+    }
 }
 
 impl Running for Isolated {
     fn process(&mut self, input: Frame<'_>, mut output: FrameMut<'_>) -> Result<()> {
         check_frames(self.descriptor, &input, &output)?;
-        let (index, name) = (self.frames, self.descriptor.name);
-        self.frames += 1;
-        let crashed = |why: &str| failed("E-FILTER-CRASH", name, &format!("frame {index}: {why}"));
         let request = Request::Process { input, writes: output.format() };
-        let mut reply = self.worker.ask(&request, FRAME);
-        if reply.is_err() && !self.worker.late {
-            // The same frame and parameters give the same output, so nothing is lost by asking another worker.
-            self.worker = self.launch.create(name, &self.values)?;
-            reply = self.worker.ask(&request, FRAME);
+        let pixels = self.ask(&request)?;
+        self.frames += 1;
+        if pixels.len() != output.pixels().len() {
+            let words = format!("frame {}: its worker sent a frame of another size", self.frames - 1);
+            return Err(failed("E-FILTER-CRASH", self.descriptor.name, &words));
         }
-        match reply {
-            Ok(Reply::Done(pixels)) if pixels.len() == output.pixels().len() => {
-                output.pixels().copy_from_slice(&pixels);
-                Ok(())
-            }
-            Ok(Reply::Done(_)) => Err(crashed("its worker sent a frame of another size")),
-            Ok(Reply::Failed(words)) => Err(failed("E-FILTER", name, &words)),
-            Ok(Reply::Panicked(words)) | Err(words) => Err(crashed(&words)),
+        output.pixels().copy_from_slice(&pixels);
+        Ok(())
+    }
+
+    fn mount(&mut self, mount: &Mount) -> Result<()> {
+        self.mount = Some(*mount);
+        self.ask(&Request::Mount(mount)).map(drop)
+    }
+
+    fn moved(&mut self, moved: &Moved) -> Result<()> {
+        if self.keeps == 0 { Ok(()) } else { self.ask(&Request::Moved(moved)).map(drop) }
+    }
+
+    fn keeps(&self) -> usize {
+        self.keeps
+    }
+
+    fn save(&mut self, kept: &mut [u8]) -> Result<()> {
+        let saved = self.ask(&Request::Save)?;
+        if saved.len() != kept.len() {
+            return Err(wrong_length(self.descriptor.name, kept.len(), saved.len()));
         }
+        kept.copy_from_slice(&saved);
+        Ok(())
+    }
+
+    fn load(&mut self, kept: &[u8]) -> Result<()> {
+        self.ask(&Request::Load(kept)).map(drop)
     }
 }
 
@@ -212,10 +256,7 @@ pub fn serve(path: &Path, trust: &Trust) -> Result<()> {
     };
     let words = serde_json::to_vec(&described).unwrap_or_default();
     write_reply(&mut output, &Reply::Done(words)).map_err(lost)?;
-    let create = |values: &[f64]| {
-        let mut native = loaded::Native::new(plugin, values)?;
-        Ok(move |input: Frame<'_>, to: FrameMut<'_>| native.process(input, to))
-    };
+    let create = |values: &[f64]| loaded::Native::new(plugin, values);
     wire::serve(&mut std::io::stdin().lock(), &mut output, create).map_err(lost)
 }
 

@@ -1,15 +1,21 @@
 //! The contract's structs as a 32-bit module lays them out, read out of its memory without trusting it.
 
-use filter_api::abi::ABI_VERSION;
+use filter_api::abi::{ABI_VERSION, OLDEST_VERSION};
 
 use crate::filter::described::{DescribedFilter, DescribedParameter, LONGEST_TEXT_BYTES, MOST_PARAMETERS};
 
 /// Bytes of `filter_plugin`.
-pub(super) const PLUGIN_BYTES: u32 = 76;
+pub(super) const PLUGIN_BYTES: u32 = 96;
+/// Bytes of what was `filter_plugin` in the first version of the contract.
+pub(super) const FIRST_BYTES: u32 = 76;
 /// Bytes of `filter_parameter`.
 pub(super) const PARAMETER_BYTES: u32 = 56;
 /// Bytes of `filter_frame`.
 pub(super) const FRAME_BYTES: u32 = 20;
+/// Bytes of `filter_mount`.
+pub(super) const MOUNT_BYTES: u32 = 48;
+/// Bytes of `filter_moved`.
+pub(super) const MOVED_BYTES: u32 = 24;
 
 /// What is wrong with the memory of a module.
 #[derive(Debug, PartialEq)]
@@ -28,11 +34,13 @@ pub(super) enum Fault {
 pub(super) fn describe(memory: &[u8], address: u32) -> Result<DescribedFilter, Fault> {
     let field = |offset: u32| number(memory, address.checked_add(offset).ok_or(Fault::Outside)?);
     let text_at = |offset: u32| text(memory, address.checked_add(offset).ok_or(Fault::Outside)?);
-    if field(0)? != ABI_VERSION {
-        return Err(Fault::Version(field(0)?));
+    let version = field(0)?;
+    if !(OLDEST_VERSION..=ABI_VERSION).contains(&version) {
+        return Err(Fault::Version(version));
     }
+    let plugin_bytes = if version == OLDEST_VERSION { FIRST_BYTES } else { PLUGIN_BYTES };
     let sizes = [field(4)?, field(8)?, field(12)?];
-    if sizes != [PLUGIN_BYTES, PARAMETER_BYTES, FRAME_BYTES] {
+    if sizes != [plugin_bytes, PARAMETER_BYTES, FRAME_BYTES] {
         return Err(Fault::Sizes(sizes));
     }
     let (count, first) = (field(56)?, field(60)?);
@@ -105,6 +113,8 @@ mod tests {
         assert_eq!(describe(&memory, 100), Err(Fault::Outside));
         memory[156] = 65;
         assert_eq!(describe(&memory, 100), Err(Fault::Parameters(65)));
+        (memory[156], memory[100], memory[104]) = (0, 1, FIRST_BYTES as u8);
+        assert_eq!(describe(&memory, 100).unwrap().name, "");
         memory[104] = 0;
         assert_eq!(describe(&memory, 100), Err(Fault::Sizes([0, PARAMETER_BYTES, FRAME_BYTES])));
         memory[101] = 1;

@@ -6,6 +6,8 @@ use super::entry::Entry;
 use crate::diagnostic::{Diagnostic, Result, printable};
 
 #[cfg(feature = "wasm")]
+mod kept;
+#[cfg(feature = "wasm")]
 mod layout;
 #[cfg(feature = "wasm")]
 mod limits;

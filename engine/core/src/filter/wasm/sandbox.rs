@@ -7,25 +7,26 @@ use std::path::Path;
 use std::sync::Arc;
 
 use filter_api::abi::{ABI_VERSION, MESSAGE_BYTES, OK};
-use filter_api::{Descriptor, Format, Frame, FrameMut};
+use filter_api::{Descriptor, Format, Frame, FrameMut, Mount, Moved};
 use wasmtime::{
     Caller, Config, Engine, Extern, ExternType, Instance, Linker, Memory, Module, OperatorCost, Store, StoreLimits,
     StoreLimitsBuilder, Trap, TypedFunc,
 };
 
-use super::layout::{FRAME_BYTES, Fault, PARAMETER_BYTES, PLUGIN_BYTES, describe};
+use super::kept::{KeptFunctions, mount_bytes, moved_bytes};
+use super::layout::{FRAME_BYTES, Fault, MOUNT_BYTES, PARAMETER_BYTES, PLUGIN_BYTES, describe};
 use super::limits::damaged;
 use crate::diagnostic::{Diagnostic, Result, printable};
 use crate::digest::Digest;
 use crate::filter::described::{DescribedFilter, check_frames};
 use crate::filter::entry::{Entry, Form};
-use crate::filter::running::{Running, failed, refused};
+use crate::filter::running::{Running, failed, refused, wrong_length};
 
 const MEMORY_BYTES: usize = 64 << 20;
 const TABLE_ELEMENTS: usize = 10_000;
 const STACK_BYTES: usize = 512 << 10;
 /// For loading, or creating an instance.
-const START_FUEL: u64 = 50_000_000;
+pub(super) const START_FUEL: u64 = 50_000_000;
 /// For one frame, and for each of its pixels on top.
 const FRAME_FUEL: u64 = 20_000_000;
 const PIXEL_FUEL: u64 = 2_000;
@@ -91,7 +92,7 @@ struct Kept {
 }
 
 /// A module with its own memory.
-struct Guest {
+pub(super) struct Guest {
     shown: String,
     store: Store<Kept>,
     memory: Memory,
@@ -153,6 +154,7 @@ impl Sandbox {
             create: create.map_err(|_| wanted("engine_filter_create", "i32, i32, i32, i32"))?,
             process: process.map_err(|_| wanted("engine_filter_process", "i32, i32, i32, i32"))?,
             allocate: allocate.map_err(|_| wanted("engine_filter_allocate", "i32"))?,
+            kept: KeptFunctions::of(guest),
         })
     }
 
@@ -160,11 +162,12 @@ impl Sandbox {
         let mut guest = self.start()?;
         let functions = self.functions(&mut guest)?;
         let values_bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
-        // The values, the place for the instance, two frames and the message, in this order.
-        let fixed = values_bytes.len() as u32 + 8 + 2 * FRAME_BYTES + 8 + MESSAGE_BYTES as u32;
+        // The values, the place for the instance, what it is told, two frames and the message, in this order.
+        let fixed = values_bytes.len() as u32 + 8 + MOUNT_BYTES + 2 * FRAME_BYTES + 8 + MESSAGE_BYTES as u32;
         let start = guest.allocate(&functions, fixed)?;
         let place = start + values_bytes.len() as u32;
-        let (frames, message) = (place + 8, place + 8 + 2 * FRAME_BYTES + 8);
+        let (told, frames) = (place + 8, place + 8 + MOUNT_BYTES);
+        let message = frames + 2 * FRAME_BYTES + 8;
         guest.write(start, &values_bytes)?;
         guest.write(place, &[0; 4])?;
         guest.write(message, &[0])?;
@@ -174,14 +177,18 @@ impl Sandbox {
             return Err(refused(&guest.words(message)));
         }
         let instance = guest.number(place)?;
-        Ok(Sandboxed { descriptor, guest, functions, instance, frames, message, pixels: [(0, 0); 2] })
+        let keeps = functions.kept.keeps(&mut guest, instance)?;
+        let kept_at = if keeps == 0 { 0 } else { guest.allocate(&functions, keeps)? };
+        let (kept, pixels) = ((kept_at, keeps), [(0, 0); 2]);
+        Ok(Sandboxed { descriptor, guest, functions, instance, told, frames, message, kept, pixels })
     }
 }
 
-struct Functions {
+pub(super) struct Functions {
     create: TypedFunc<(u32, u32, u32, u32), i32>,
     process: TypedFunc<(u32, u32, u32, u32), i32>,
     allocate: TypedFunc<u32, u32>,
+    pub(super) kept: KeptFunctions,
 }
 
 /// An instance of a sandboxed filter, with the addresses of what it shares with the host.
@@ -190,8 +197,11 @@ struct Sandboxed {
     guest: Guest,
     functions: Functions,
     instance: u32,
+    told: u32,
     frames: u32,
     message: u32,
+    /// Address and length of what it keeps.
+    kept: (u32, u32),
     /// Address and length of the pixels to read and of those to fill.
     pixels: [(u32, u32); 2],
 }
@@ -225,10 +235,57 @@ impl Running for Sandboxed {
         to.copy_from_slice(guest.read(to_address, to.len())?);
         Ok(())
     }
+
+    fn mount(&mut self, mount: &Mount) -> Result<()> {
+        let Some(function) = &self.functions.kept.mount else { return Ok(()) };
+        self.guest.write(self.told, &mount_bytes(mount))?;
+        self.guest.write(self.message, &[0])?;
+        let arguments = (self.instance, self.told, self.message);
+        let status = self.guest.call(function, arguments, START_FUEL, "hearing of the camera")?;
+        self.outcome(status)
+    }
+
+    fn moved(&mut self, moved: &Moved) -> Result<()> {
+        let Some(function) = &self.functions.kept.moved else { return Ok(()) };
+        self.guest.write(self.told, &moved_bytes(moved))?;
+        self.guest.call(function, (self.instance, self.told), START_FUEL, "hearing of the way")
+    }
+
+    fn keeps(&self) -> usize {
+        self.kept.1 as usize
+    }
+
+    fn save(&mut self, kept: &mut [u8]) -> Result<()> {
+        let (Some(function), (address, _)) = (&self.functions.kept.save, self.kept) else { return Ok(()) };
+        self.guest.call(function, (self.instance, address), START_FUEL, "saving what it keeps")?;
+        kept.copy_from_slice(self.guest.read(address, kept.len())?);
+        Ok(())
+    }
+
+    fn load(&mut self, kept: &[u8]) -> Result<()> {
+        let (Some(function), (address, bytes)) = (&self.functions.kept.load, self.kept) else { return Ok(()) };
+        if kept.len() != bytes as usize {
+            return Err(wrong_length(self.descriptor.name, bytes as usize, kept.len()));
+        }
+        self.guest.write(address, kept)?;
+        self.guest.write(self.message, &[0])?;
+        let arguments = (self.instance, address, bytes, self.message);
+        let status = self.guest.call(function, arguments, START_FUEL, "loading what it kept")?;
+        self.outcome(status)
+    }
+}
+
+impl Sandboxed {
+    fn outcome(&self, status: i32) -> Result<()> {
+        match status {
+            OK => Ok(()),
+            _ => Err(failed("E-FILTER", self.descriptor.name, &self.guest.words(self.message))),
+        }
+    }
 }
 
 impl Guest {
-    fn function<Arguments, Results>(&mut self, name: &str) -> wasmtime::Result<TypedFunc<Arguments, Results>>
+    pub(super) fn function<Arguments, Results>(&mut self, name: &str) -> wasmtime::Result<TypedFunc<Arguments, Results>>
     where
         Arguments: wasmtime::WasmParams,
         Results: wasmtime::WasmResults,
@@ -236,7 +293,7 @@ impl Guest {
         self.instance.get_typed_func(&mut self.store, name)
     }
 
-    fn call<Arguments, Results>(
+    pub(super) fn call<Arguments, Results>(
         &mut self,
         function: &TypedFunc<Arguments, Results>,
         arguments: Arguments,

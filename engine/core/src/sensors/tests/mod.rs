@@ -2,6 +2,7 @@
 
 mod bodies;
 mod camera;
+mod depth;
 mod laser;
 mod oracle;
 mod repeat;

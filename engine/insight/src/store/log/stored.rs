@@ -8,7 +8,7 @@ use std::sync::Arc;
 use super::{LOG_FILE, damaged, read_log};
 use crate::store::{StoredRun, read_stored};
 use engine::diagnostic::{Diagnostic, Result};
-use engine::experiment::{RunLog, Summary};
+use engine::experiment::{Decider, RunLog, Summary};
 use engine::filter::Catalogue;
 
 /// The longest log that is read, bytes: two phases of the most steps with a dozen reward functions each.
@@ -34,10 +34,13 @@ impl RecordedRun {
         let (stored, run) = StoredRun::read(folder, filters)?;
         let path = folder.join(LOG_FILE);
         let bytes = read_bytes(&path)?;
-        let log = read_log(&bytes, &stored.plan, stored.seed, &run.text).map_err(|mut error| {
+        let mut log = read_log(&bytes, &stored.plan, stored.seed, &run.text).map_err(|mut error| {
             error.message = format!("'{}': {}", path.display(), error.message);
             error
         })?;
+        if let Decider::Learned(policy) = &stored.decider {
+            log.test.set_out_from(policy.kept());
+        }
         let path = folder.join("summary.json");
         if log.test.is_empty() && !log.learning.is_empty() && !path.exists() {
             return Ok(Self { stored, log, summary: None });

@@ -29,6 +29,17 @@ fn a_policy_is_read_back_bit_for_bit() {
 }
 
 #[test]
+fn what_filters_kept_is_read_back_and_damage_of_it_is_an_error() {
+    let settings = Settings::default();
+    let policy = policy().keeping((0..=255).collect());
+    let parts = (&settings, Vec::new());
+    let text = text_of("wall", parts, &Catalogue::linked_in(), (&map(&settings), &policy), None).unwrap();
+    assert_eq!(read(&SourceText::new("policy.toml", text.clone()), &settings).unwrap(), policy);
+    let error = read(&SourceText::new("policy.toml", text.replace("AAEC", "A!EC")), &settings).unwrap_err();
+    assert_eq!(error.message, "'policy.toml' has damaged bytes of its filters in 'kept'");
+}
+
+#[test]
 fn filters_are_read_back_with_their_parameters() {
     let mut settings = Settings::default();
     let parameters = vec![("saturation".to_owned(), 0.4), ("hue_deg".to_owned(), 120.0)];
@@ -43,7 +54,7 @@ fn filters_are_read_back_with_their_parameters() {
 fn the_first_format_is_named_and_not_guessed_at() {
     let old = "format = 1\nbehaviour = \"wall\"\nfilters = [\"sobel(threshold: 60)\"]\n";
     let error = StoredPolicy::parse(&SourceText::new("policy.toml", old)).unwrap_err();
-    assert_eq!(error.message, "'policy.toml' has format 1, this engine reads formats 2 to 4");
+    assert_eq!(error.message, "'policy.toml' has format 1, this engine reads formats 2 to 5");
 }
 
 #[test]

@@ -181,7 +181,7 @@ fn record(plan: &Plan) -> Result<Vec<Situation>> {
             samples.push(Situation {
                 pose: body.pose,
                 body: body.world_from_robot(),
-                image: cycle.observation().image.clone(),
+                image: cycle.observation().sight().clone(),
                 mask: cycle.mask().to_vec(),
                 facts: cycle.facts().clone(),
                 state: step.next_state,
