@@ -16,7 +16,7 @@ struct EditionRow {
 
 const EDITIONS: usize = 2;
 
-/// Every default that depends on the edition; the others are those of all of them.
+/// Every default that depends on the edition; the others are those of all of them. The second one remembers its steps.
 const ROWS: &[EditionRow] = &[EditionRow { group: "learner", key: "kind", words: ["ttd", "memory"] }];
 
 impl Edition {
