@@ -72,21 +72,25 @@ fn a_world_with_several_bodies_that_run_into_one_another_allocates_nothing() {
     assert!(touching > 0);
 }
 
+/// Another learner than the one that makes a row for each new state.
+fn by_table() -> Overrides {
+    Overrides { set: vec!["learner.kind=ttd".to_owned()], ..Overrides::default() }
+}
+
 #[test]
 fn what_is_remembered_is_allocated_before_the_first_step_and_with_each_new_state() {
     let behaviour = Behaviour::load(&root().join("scripts/wall.rhai")).unwrap();
-    let overrides = Overrides { set: vec!["learner.kind=memory".to_owned()], ..Overrides::default() };
-    let plan = Plan::new(Arc::new(behaviour), &overrides).unwrap();
+    let plan = Plan::new(Arc::new(behaviour), &Overrides::default()).unwrap();
     let [few, many] = [1_000, 5_000].map(|steps| allocations(&plan, steps));
     // Of the later states each needs room in some 20 lists, which grow by doubling.
     assert!(many.saturating_sub(few) < 200, "{few} and {many}");
 }
 
 #[test]
-fn more_steps_allocate_nothing_more() {
+fn more_steps_allocate_nothing_more_with_a_table() {
     for script in ["wall", "corridor", "platform", "object"] {
         let behaviour = Behaviour::load(&root().join(format!("scripts/{script}.rhai"))).unwrap();
-        let plan = Plan::new(Arc::new(behaviour), &Overrides::default()).unwrap();
+        let plan = Plan::new(Arc::new(behaviour), &by_table()).unwrap();
         assert_eq!(allocations(&plan, 5_000), allocations(&plan, 1_000), "{script}");
     }
 }
@@ -96,7 +100,7 @@ fn more_steps_through_scharr_allocate_nothing_more() {
     let path = root().join("scripts/wall.rhai");
     let text = std::fs::read_to_string(&path).unwrap().replace("\"sobel\"", "\"scharr\"");
     let behaviour = Behaviour::parse("wall", SourceText::new(path, text)).unwrap();
-    let plan = Plan::new(Arc::new(behaviour), &Overrides::default()).unwrap();
+    let plan = Plan::new(Arc::new(behaviour), &by_table()).unwrap();
     assert_eq!(plan.settings.view.filters[0].name, "scharr");
     assert_eq!(allocations(&plan, 5_000), allocations(&plan, 1_000));
 }

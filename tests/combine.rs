@@ -6,10 +6,10 @@ use crate::support::{Bench, SCRIPT};
 /// Two policies of the short behaviour, each with a filter of its own, and a script that combines them.
 fn bench(way: &str) -> Bench {
     let bench = Bench::new();
-    bench.write("left.rhai", format!("{SCRIPT}\nfilter(\"sobel\", #{{ threshold: 60 }});"));
+    bench.write("left.rhai", format!("{SCRIPT}\nfilter(\"sobel\", #{{ threshold: 60 }}); learner(\"ttd\");"));
     bench.write(
         "right.rhai",
-        format!("{SCRIPT}\nfilter(\"sobel\", #{{ threshold: 90 }}); grid(#{{ occupied: 0.03 }});"),
+        format!("{SCRIPT}\nfilter(\"sobel\", #{{ threshold: 90 }}); grid(#{{ occupied: 0.03 }}); learner(\"ttd\");"),
     );
     bench.engine(&["run", "left.rhai"]);
     bench.engine(&["run", "right.rhai", "--seed", "2"]);

@@ -18,16 +18,39 @@ fn an_upgrade_is_shown_first_and_written_on_demand() {
 }
 
 #[test]
-fn an_upgraded_script_learns_the_same_table() {
+fn a_script_of_the_first_edition_learns_the_same_table_when_it_is_upgraded() {
     let bench = Bench::new();
+    bench.write("short.rhai", format!("edition(1);\n{SCRIPT}"));
     let learned = |bench: &Bench| {
         bench.engine(&["run", "short.rhai", "--force"]);
         let text = bench.read("runs/short/1/policy.toml");
         text.lines().filter(|line| !line.starts_with("run_sha256")).collect::<Vec<_>>().join("\n")
     };
     let before = learned(&bench);
+    assert!(before.starts_with("format = 2\n"), "{before}");
     bench.ok(&["upgrade", "short.rhai", "--write"]);
     assert_eq!(learned(&bench), before);
+}
+
+#[test]
+fn the_second_edition_learns_by_memory_and_the_first_by_ttd() {
+    let bench = Bench::new();
+    for (edition, format) in [("", 4), ("edition(2);", 4), ("edition(1);", 2)] {
+        bench.write("short.rhai", format!("{edition}\n{SCRIPT}"));
+        bench.engine(&["run", "short.rhai", "--force"]);
+        assert!(bench.read("runs/short/1/policy.toml").starts_with(&format!("format = {format}\n")), "{edition}");
+    }
+}
+
+#[test]
+fn a_setting_of_another_learner_is_refused_where_nothing_would_read_it() {
+    let bench = Bench::new();
+    let told = bench.failure(&["run", "short.rhai", "--set", "learner.window=10"]);
+    assert!(told.starts_with("exit status 2") && told.contains("E-SET") && told.contains("learner.kind=ttd"), "{told}");
+    let told = bench.failure(&["run", "short.rhai", "--set", "learner.memory_steps=900", "--set", "learner.kind=q"]);
+    assert!(told.contains("learner \"q\" remembers no steps") && told.contains("learner.kind=memory"), "{told}");
+    bench.engine(&["run", "short.rhai", "--set", "learner.window=10", "--set", "learner.kind=ttd"]);
+    assert!(bench.read("runs/short/1/run.toml").contains("window = 10.0"));
 }
 
 #[cfg(unix)]

@@ -22,14 +22,33 @@ struct Hashes {
 type Golden = BTreeMap<String, BTreeMap<String, Hashes>>;
 
 const SEEDS: usize = 3;
+const TTD: &str = "learner.kind=ttd";
 
-/// Settings that no shipped script has, each with the script that it is tried on.
+/// What is learned with `ttd` too, the learner of the paper and of the first edition: the paper's behaviours, and some with goals,
+/// with stages, with several views.
+const BY_TTD: &[&str] = &[
+    "wall",
+    "wall-instant",
+    "wall-left",
+    "corridor",
+    "corridor-erroneous",
+    "corridor-speed",
+    "platform",
+    "object",
+    "dock",
+    "dock-search",
+    "bridge",
+];
+
+/// Settings that no shipped script has, each with the script that it is tried on for 1,200 steps.
 const VARIANTS: &[(&str, &str)] = &[
     ("wall", "learner.kind=q"),
     ("wall", "learner.kind=sarsa-lambda"),
     ("wall", "learner.kind=ttd-cichosz"),
-    ("wall", "learner.replay=3"),
+    ("wall", "learner.kind=ttd learner.replay=3"),
+    ("wall", "learner.kind=ttd learner.failure_is_terminal=true"),
     ("wall", "learner.failure_is_terminal=true"),
+    ("corridor", "learner.kind=ttd learner.mirror=true"),
     ("corridor", "learner.mirror=true"),
     ("wall", "camera.lens=fisheye"),
     ("wall", "recovery.to=start"),
@@ -40,18 +59,14 @@ const VARIANTS: &[(&str, &str)] = &[
 const HEADER: &str =
     "# What every shipped behaviour left when it was recorded; tests/golden.rs says how to record it anew.\n\n";
 
-/// Runs a shipped behaviour under every seed, in `bench`.
-fn run(bench: &Bench, script: &str, change: Option<&str>) -> BTreeMap<String, Hashes> {
+/// Runs a shipped behaviour under every seed, in `bench`, with further arguments.
+fn run(bench: &Bench, script: &str, further: &[&str]) -> BTreeMap<String, Hashes> {
     let path = root().join(format!("scripts/{script}.rhai"));
     let seeds = SEEDS.to_string();
     let mut arguments = vec!["run", path.to_str().unwrap(), "--seeds", &seeds, "--json"];
-    match change.map(|pair| pair.split_once("world=").map_or((pair, None), |(_, world)| (pair, Some(world)))) {
-        Some((_, Some(world))) => arguments.extend(["--world", world]),
-        Some((pair, None)) => arguments.extend(["--set", pair, "--set", "run.test_steps=800"]),
-        None => {}
-    }
-    if change.is_some() {
-        arguments.extend(["--steps", "1200", "--out", "variant", "--force"]);
+    arguments.extend(further);
+    if !further.is_empty() {
+        arguments.extend(["--out", "variant", "--force"]);
     }
     let output = bench.engine(&arguments);
     assert!(output.status.code().unwrap() <= 1, "{script}: {}", String::from_utf8_lossy(&output.stderr));
@@ -76,10 +91,19 @@ fn now() -> Golden {
     for script in ["avoid", "object"] {
         bench.engine(&["run", root().join(format!("scripts/{script}.rhai")).to_str().unwrap()]);
     }
-    let shipped = scripts.iter().map(|script| (script.clone(), run(&bench, script, None)));
-    let variants =
-        VARIANTS.iter().map(|(script, change)| (format!("{script} {change}"), run(&bench, script, Some(change))));
-    shipped.chain(variants).collect()
+    let shipped = scripts.iter().map(|script| (script.clone(), run(&bench, script, &[])));
+    let by_ttd = BY_TTD.iter().map(|script| (format!("{script} by ttd"), run(&bench, script, &["--set", TTD])));
+    let variants = VARIANTS.iter().map(|(script, change)| {
+        let mut further = vec!["--steps", "1200", "--set", "run.test_steps=800"];
+        for pair in change.split_whitespace() {
+            match pair.strip_prefix("world=") {
+                Some(world) => further.extend(["--world", world]),
+                None => further.extend(["--set", pair]),
+            }
+        }
+        (format!("{script} {change}"), run(&bench, script, &further))
+    });
+    shipped.chain(by_ttd).chain(variants).collect()
 }
 
 #[test]

@@ -142,14 +142,15 @@ fn a_ledger_says_where_two_runs_part() {
 fn a_learner_led_along_its_own_steps_learns_its_own_table() {
     for (script, set) in [
         ("wall", ""),
+        ("object", ""),
+        ("wall", "learner.kind=ttd"),
         ("corridor-speed", "learner.kind=q"),
-        ("platform", "learner.replay=3"),
-        ("wall", "learner.kind=memory"),
-        ("object", "learner.kind=memory"),
+        ("platform", "learner.kind=ttd learner.replay=3"),
     ] {
         let mut plan = plan(script, 800);
         if !set.is_empty() {
-            plan = plan.with_changes(&Overrides { set: vec![set.to_owned()], ..Overrides::default() }).unwrap();
+            let set = set.split_whitespace().map(str::to_owned).collect();
+            plan = plan.with_changes(&Overrides { set, ..Overrides::default() }).unwrap();
         }
         let mut ledger = Ledger::new(&plan, 800);
         let learned = learn_into(&plan, 9, &AtomicBool::new(false), &|_| (), &mut ledger).unwrap();

@@ -28,7 +28,6 @@ fn plan(script: &str) -> Plan {
 
 fn remembering() -> Bench {
     let bench = Bench::new();
-    bench.write("short.rhai", format!("learner(#{{ kind: \"memory\" }});\n{SCRIPT}"));
     let output = bench.engine(&["run", "short.rhai", "--out", "a"]);
     assert!(output.status.code().is_some_and(|code| code < 2), "{}", String::from_utf8_lossy(&output.stderr));
     bench
@@ -72,7 +71,7 @@ fn the_value_of_an_action_is_explained_down_to_the_steps_behind_it() {
     let text = String::from_utf8(bench.engine(&["explain", "a", "--step", "500"]).stdout).unwrap();
     assert!(text.contains("why this action was worth") && text.contains("similar actions"), "{text}");
     // A table has no such chain.
-    bench.write("table.rhai", SCRIPT);
+    bench.write("table.rhai", format!("learner(\"ttd\");\n{SCRIPT}"));
     bench.engine(&["run", "table.rhai", "--out", "b"]);
     assert!(json(&bench, &["explain", "b", "--step", "500"])["value"].is_null());
 }

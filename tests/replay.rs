@@ -329,7 +329,7 @@ fn a_script_that_sees_something_else_cannot_judge_a_record() {
     // How it learns, and for how long, may differ: the record can be learned in any way.
     bench.write(
         "other.rhai",
-        SCRIPT.replace("steps: 800", "steps: 900").replace("run(", "learner(#{ step_size: 0.1 });\nrun("),
+        SCRIPT.replace("steps: 800", "steps: 900").replace("run(", "learner(#{ memory_lambda: 0.5 });\nrun("),
     );
     json(&bench, &["rescore", "a", "other.rhai"]);
 }

@@ -175,7 +175,7 @@ impl Job {
         let (real, seeds) = options.learn(learn);
         let path = options.scripts.join(format!("{}.rhai", real.script));
         let plan = Behaviour::load(&path).and_then(|behaviour| {
-            let set = real.set.iter().map(|pair| (*pair).to_owned()).collect();
+            let set = real.changes().map(str::to_owned).collect();
             let overrides =
                 Overrides { steps: real.steps, test_steps: Some(real.test_steps), set, ..Overrides::default() };
             Plan::new(Arc::new(behaviour), &overrides)

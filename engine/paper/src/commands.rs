@@ -17,7 +17,7 @@ pub(super) fn command(claim: &Claim, options: &Options) -> String {
     if let Some(steps) = learn.steps {
         run.push_str(&format!(" --steps {steps}"));
     }
-    for pair in learn.set {
+    for pair in learn.changes() {
         run.push_str(&format!(" --set {pair}"));
     }
     run.push_str(&format!(" --set run.test_steps={}", learn.test_steps));

@@ -9,7 +9,7 @@ use engine::verdict::TestFigures;
 pub struct Learn {
     /// The script's name, without ending.
     pub script: &'static str,
-    /// `KEY=VALUE` changes.
+    /// `KEY=VALUE` changes, besides the learner: see [`Learn::changes`].
     pub set: &'static [&'static str],
     /// Steps to learn; `None` is what the script says.
     pub steps: Option<u64>,
@@ -30,6 +30,12 @@ impl Learn {
     #[must_use]
     pub const fn set(self, set: &'static [&'static str]) -> Self {
         Self { set, ..self }
+    }
+
+    /// All changes to the script: the paper's learner, unless the job names another one, then its own.
+    pub fn changes(self) -> impl Iterator<Item = &'static str> {
+        let named = self.set.iter().any(|pair| pair.starts_with("learner.kind="));
+        (!named).then_some("learner.kind=ttd").into_iter().chain(self.set.iter().copied())
     }
 
     /// This job for another number of steps, under at most so many seeds.

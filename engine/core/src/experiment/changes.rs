@@ -6,7 +6,8 @@ use super::Overrides;
 use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
 use crate::script::{Behaviour, Param, ParamValues, no_param};
 use crate::settings::{
-    CONDITION, SETTINGS, SettingError, Settings, UNNAMED_VIEW, Value, Varied, ViewSettings, WorldShare, apply,
+    CONDITION, LearnerKind, SETTINGS, SettingError, Settings, UNNAMED_VIEW, Value, Varied, ViewSettings, WorldShare,
+    apply,
 };
 
 impl Overrides {
@@ -52,6 +53,7 @@ pub(super) fn changed(settings: &Settings, params: &[Param], overrides: &Overrid
         settings.randomise.clear();
     }
     refuse_drawn(&settings, overrides)?;
+    refuse_unread(&settings, overrides)?;
     Ok(settings)
 }
 
@@ -68,10 +70,28 @@ fn refuse_repeated(overrides: &Overrides) -> Result<()> {
     Ok(())
 }
 
+/// The names of what is set, as written.
+fn keys(overrides: &Overrides) -> impl Iterator<Item = &str> {
+    overrides.set.iter().filter_map(|pair| pair.split_once('=')).map(|(key, _)| key.trim())
+}
+
+/// Refuses to set what the learner does not read; a combination of policies has none.
+fn refuse_unread(settings: &Settings, overrides: &Overrides) -> Result<()> {
+    if !settings.policies.is_empty() {
+        return Ok(());
+    }
+    let learning = keys(overrides).filter_map(|key| key.strip_prefix("learner."));
+    let Some((key, (why, _))) = learning.filter_map(|key| Some((key, settings.learner.unread(key)?))).next() else {
+        return Ok(());
+    };
+    let kind = if key.starts_with("memory_") { LearnerKind::Memory } else { LearnerKind::Ttd };
+    let help = format!("leave it out, or set the learner too: --set learner.kind={}", kind.word());
+    Diagnostic::new("E-SET", format!("'learner.{key}' would have no effect: {why}")).help(help).fail()
+}
+
 /// Refuses to set what is drawn anew for each attempt.
 fn refuse_drawn(settings: &Settings, overrides: &Overrides) -> Result<()> {
-    let keys = || overrides.set.iter().filter_map(|pair| pair.split_once('=')).map(|(key, _)| key.trim());
-    let drawn = settings.randomise.iter().find(|varied| keys().any(|key| key == varied.key));
+    let drawn = settings.randomise.iter().find(|varied| keys(overrides).any(|key| key == varied.key));
     let Some(Varied { key, .. }) = drawn else { return Ok(()) };
     let message = format!("'{key}' is drawn anew for each attempt: it cannot be set to one value");
     Diagnostic::new("E-SET", message).help(format!("take {key} out of randomise, or change its range there")).fail()

@@ -8,7 +8,8 @@
 //!   i's mean-free values over all states that it met: one number for each policy, so that what does not matter to it
 //!   stays small.
 //!
-//! The action is drawn by softmax, equation (3), from Q(a) at the lowest temperature. In a state that it never met a
+//! The action is drawn by softmax, equation (3), from Q(a) at the lowest temperature, by priority at that of the policy that decides
+//! if it has one of its own. In a state that it never met a
 //! policy has no values: it does not care, and adds nothing to a sum. Without any values, all actions are equally likely.
 
 use std::collections::BTreeMap;
@@ -38,6 +39,8 @@ struct MemberRow {
     values: Vec<f64>,
     best: usize,
     cares: bool,
+    /// The policy's own temperature.
+    temperature: Option<f64>,
 }
 
 /// What the policies decided together.
@@ -64,7 +67,7 @@ impl Combined {
                 let median = values.iter().copied().collect::<Sorted>().midpoint_median().unwrap_or(0.0);
                 let cares = greatest - median >= settings.margin;
                 let values = if by_priority { values.to_vec() } else { mean_free(values, divisor) };
-                MemberRow { values, best, cares }
+                MemberRow { values, best, cares, temperature: policy.temperature() }
             };
             policy.rows().map(|(state, known)| (state, row(&known.values))).collect()
         });
@@ -107,7 +110,10 @@ impl Combined {
         let decider = caring.map(|(index, _)| index);
         match caring.and_then(|(_, row)| row) {
             Some(row) => {
-                let action = self.softmax.choose(&row.values, allowed, u64::MAX, random);
+                let action = match row.temperature {
+                    Some(temperature) => self.softmax.choose_at(&row.values, allowed, temperature, random),
+                    None => self.softmax.choose(&row.values, allowed, u64::MAX, random),
+                };
                 Decision { action, preferred: Some(row.best), decider }
             }
             None => Decision { action: any_of(self.sum.len(), allowed, random), preferred: None, decider },
@@ -175,6 +181,20 @@ mod tests {
         assert_eq!(decide(&mut both, &[0, 0]), Decision { action: 1, preferred: Some(1), decider: Some(0) });
         assert_eq!(decide(&mut both, &[1, 0]), Decision { action: 0, preferred: Some(0), decider: Some(1) });
         assert_eq!(both.votes(), [Some(1), Some(0)]);
+    }
+
+    #[test]
+    fn the_policy_that_decides_chooses_at_its_own_temperature() {
+        // At 100 its three values are as good as equal, at the settings' 0.009 only the best one is taken.
+        let first = || policy(&[&[0.0, 0.1, 0.2]]);
+        let actions = |first: Policy| {
+            let mut both = combined(&[first, policy(&[&[]])], CombineWay::Priority, 0.05, false);
+            let mut random = Random::new(1, Stream::Test);
+            (0..100).map(|_| both.choose(&[0, 0], Allowed::ALL, &mut random).action).collect::<Vec<_>>()
+        };
+        assert!(actions(first()).iter().all(|action| *action == 2));
+        let hot = actions(first().at_temperature(100.0));
+        assert!((0..3).all(|action| hot.iter().filter(|chosen| **chosen == action).count() > 20));
     }
 
     #[test]

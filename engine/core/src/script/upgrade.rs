@@ -117,10 +117,14 @@ fn newest(behaviour: &Behaviour, changes: &mut Vec<String>) -> Edit {
     let (number, source) = (Edition::NEWEST.number(), behaviour.source());
     let mut lines = vec![format!("edition({number});")];
     changes.push(format!("edition({number});"));
+    let whence = match behaviour.place_of("edition") {
+        Some(_) => "by its edition",
+        None => "in edition 1, of which a script that says none is taken to be",
+    };
     for (group, key, word) in behaviour.edition().defaults() {
         if behaviour.place_of(&format!("{group}.{key}")).is_none() {
             lines.push(format!("{group}(#{{ {key}: \"{word}\" }});"));
-            changes.push(format!("{group}.{key} was \"{word}\" by the edition: written out"));
+            changes.push(format!("{group}.{key} was \"{word}\" {whence}: written out"));
         }
     }
     if let Some(span) = behaviour.place_of("edition") {

@@ -16,8 +16,8 @@ struct EditionRow {
 
 const EDITIONS: usize = 2;
 
-/// Every default that depends on the edition; the others are those of all of them.
-const ROWS: &[EditionRow] = &[EditionRow { group: "learner", key: "kind", words: ["ttd", "ttd"] }];
+/// Every default that depends on the edition; the others are those of all of them. The second one remembers its steps.
+const ROWS: &[EditionRow] = &[EditionRow { group: "learner", key: "kind", words: ["ttd", "memory"] }];
 
 impl Edition {
     /// That of version 0.1, of which nothing says its edition.
@@ -83,8 +83,10 @@ mod tests {
     }
 
     #[test]
-    fn the_first_edition_learns_as_version_1_did() {
-        assert_eq!(Settings::of_edition(Edition::FIRST).learner.kind, LearnerKind::Ttd);
+    fn the_first_edition_learns_as_version_1_did_and_the_second_remembers() {
+        let kinds = Edition::all().map(|edition| Settings::of_edition(edition).learner.kind);
+        assert_eq!(kinds.collect::<Vec<_>>(), [LearnerKind::Ttd, LearnerKind::Memory]);
+        assert_eq!(Settings::default().learner.kind, LearnerKind::Memory);
     }
 
     #[test]

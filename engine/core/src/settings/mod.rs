@@ -183,6 +183,29 @@ impl LearnerSettings {
             _ => self.discount,
         }
     }
+
+    /// Why the learner that is set does not read a setting of learning, and what to write instead; nothing if it does.
+    #[must_use]
+    pub fn unread(&self, key: &str) -> Option<(String, &'static str)> {
+        let of_memory = key.starts_with("memory_");
+        match self.kind {
+            _ if ["kind", "failure_is_terminal", "mirror"].contains(&key) => None,
+            LearnerKind::Memory if of_memory => None,
+            LearnerKind::Memory => {
+                let instead = match key {
+                    "discount" => "write memory_discount",
+                    "trace_decay" => "write memory_lambda",
+                    _ => "take it out, or write learner(\"ttd\", ...)",
+                };
+                Some((format!("learner \"memory\" has no {key}"), instead))
+            }
+            kind if of_memory => {
+                let why = format!("learner \"{}\" remembers no steps", kind.word());
+                Some((why, "take it out, or write learner(#{ kind: \"memory\" })"))
+            }
+            _ => None,
+        }
+    }
 }
 
 /// What `then recover` does.

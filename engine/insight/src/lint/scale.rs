@@ -1,8 +1,10 @@
-//! Rewards whose size does not suit the softmax: one of them decides for good, or none can be told from nothing.
+//! Rewards whose size does not suit the softmax of a table: one of them decides for good, or none can be told from nothing. The
+//! learner `memory` finds its own unit, so that every size suits it.
 
 use super::{Finding, LintTrial};
 use engine::diagnostic::printable;
 use engine::experiment::Plan;
+use engine::settings::LearnerKind;
 
 /// Odds at the hottest below which an action that was punished once is as good as never tried again.
 const NEVER_AGAIN: f64 = 1e-6;
@@ -13,12 +15,16 @@ const NEVER_AGAIN: f64 = 1e-6;
 /// factor `exp(-step_size * reward / temperature)`.
 fn most(plan: &Plan) -> f64 {
     let learner = &plan.settings.learner;
+    if learner.kind == LearnerKind::Memory {
+        return f64::INFINITY;
+    }
     -libm::log(NEVER_AGAIN) * learner.temperature / learner.step_size.max(1e-9)
 }
 
 /// The least reward that the coolest softmax can tell from nothing.
 fn least(plan: &Plan) -> f64 {
-    plan.settings.learner.temperature_end
+    let learner = &plan.settings.learner;
+    if learner.kind == LearnerKind::Memory { 0.0 } else { learner.temperature_end }
 }
 
 /// Rules with a fixed value.

@@ -54,27 +54,6 @@ fn blind_starts(plan: &Plan, findings: &mut Vec<Finding>) {
     }
 }
 
-/// Of a setting that is about tables where the learner remembers its steps, or the other way round.
-fn of_another_learner(kind: LearnerKind, key: &str) -> Option<(String, &'static str)> {
-    let of_both = ["kind", "failure_is_terminal", "mirror"].contains(&key);
-    match (kind, key.starts_with("memory_")) {
-        _ if of_both => None,
-        (LearnerKind::Memory, false) => {
-            let instead = match key {
-                "discount" => "write memory_discount",
-                "trace_decay" => "write memory_lambda",
-                _ => "take it out, or write learner(\"ttd\", ...)",
-            };
-            Some((format!("learner \"memory\" has no {key}"), instead))
-        }
-        (LearnerKind::Memory, true) | (_, false) => None,
-        (kind, true) => {
-            let why = format!("learner \"{}\" remembers no steps", kind.word());
-            Some((why, "take it out, or write learner(#{ kind: \"memory\" })"))
-        }
-    }
-}
-
 /// Why a setting has no effect, and what to do about it.
 fn idle(plan: &Plan, name: &str) -> Option<(String, &'static str)> {
     let (settings, outline) = (&plan.settings, plan.behaviour.outline());
@@ -82,7 +61,8 @@ fn idle(plan: &Plan, name: &str) -> Option<(String, &'static str)> {
     let reads_laser = outline.groups.iter().any(|group| group == "laser");
     let (group, key) = name.split_once('.')?;
     if group == "learner"
-        && let Some(why) = of_another_learner(learner.kind, key)
+        && !combines
+        && let Some(why) = learner.unread(key)
     {
         return Some(why);
     }

@@ -92,9 +92,10 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
     (
         "W-SCALE",
         Kind::Input,
-        "A reward does not suit the softmax that chooses actions; its temperature begins at 0.07 and ends at 0.009.\n\
+        "A reward does not suit the softmax of a learner with a table; its temperature begins at 0.07 and ends at 0.009.\n\
       After one very large punishment an action is never tried again; a very small one cannot be told from nothing.\n\
-      Keep rewards between -1 and 1, or change learner.temperature and learner.temperature_end with them.",
+      Keep rewards between -1 and 1, or change learner.temperature and learner.temperature_end with them. The learner\n\
+      memory takes rewards of any size.",
     ),
     (
         "W-STAGE-DEAD",

@@ -186,7 +186,7 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
     (
         "E-SET",
         Kind::Usage,
-        "A --set on the command line names no setting, or gives it a value that it cannot have.\n\
+        "A --set on the command line names no setting, or one that the learner does not read, or gives it a value that it cannot have.\n\
          Write --set GROUP.KEY=VALUE, such as --set camera.tilt_deg=40; a parameter of the script by its name alone, --set near=0.3.",
     ),
 ];

@@ -60,7 +60,8 @@ fn the_language_as_data_holds_what_the_page_holds() {
     assert_eq!((&tilt["least"], &tilt["greatest"], &tilt["default"]), (&(-30.0).into(), &90.0.into(), &42.0.into()));
     let bearing = row("facts", "key", "bearing_deg");
     assert_eq!((&bearing["unseen"], &bearing["cost"]), (&180.0.into(), &"mask".into()));
-    assert_eq!(data["editions"][0]["defaults"]["learner.kind"], "ttd");
+    let by_edition = [0, 1].map(|edition| data["editions"][edition]["defaults"]["learner.kind"].clone());
+    assert_eq!(by_edition, ["ttd", "memory"]);
     assert!(texts("statements", "word").iter().any(|word| word == "use"));
     assert!(texts("codes", "code").iter().any(|code| code == "E-SCRIPT-USE"));
 }
