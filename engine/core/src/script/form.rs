@@ -98,7 +98,7 @@ fn end_of_number(text: &str) -> usize {
         let part = bytes[at].is_ascii_alphanumeric() || bytes[at] == b'_';
         let point = bytes[at] == b'.' && digit(at + 1);
         let sign = matches!(bytes[at], b'-' | b'+') && matches!(bytes[at - 1], b'e' | b'E') && digit(at + 1);
-        if !part && !point && !(at > 0 && sign) {
+        if !(part || point || sign) {
             break;
         }
         at += 1;
