@@ -188,7 +188,7 @@ fn better_place(filter: &Descriptor, before: &[&Descriptor], catalogue: &Catalog
     }
     let reads = filter.reads;
     let written = before.iter().map(|descriptor| descriptor.writes);
-    if std::iter::once(Format::Rgb).chain(written).any(|format| reads.contains(&format)) {
+    if [Format::Rgb, Format::Depth].into_iter().chain(written).any(|format| reads.contains(&format)) {
         return "put it earlier in the chain".to_owned();
     }
     let wanted = |descriptor: &&'static Descriptor| {
@@ -355,7 +355,7 @@ mod tests {
         assert_eq!(two_ways.help.as_deref(), Some("one chain makes one mask: leave out 'colour' or 'sobel'"));
         let first = error(&[stage("horizon", &[]), stage("sobel", &[])]);
         assert_eq!(first.message, "filter 'horizon' reads a mask, not colour");
-        let help = "put one before it that writes a mask: colour, floor, scharr, sobel, threshold, where";
+        let help = "put one before it that writes a mask: chroma, colour, floor, relief, scharr, sobel, threshold, where";
         assert_eq!(first.help.as_deref(), Some(help));
         let grey_at_the_end = error(&[stage("blur", &[])]);
         assert_eq!(grey_at_the_end.message, "the last filter writes grey, but the grid needs a mask");
