@@ -2,7 +2,7 @@
 //!
 //! A stretch may be painted too long, since what follows is painted afterwards; so every write has a fixed length.
 
-use super::texture::{Looks, PATTERN_PX, TextureLook};
+use super::texture::{LEVELS, Looks, PATTERN_PX, Shades, TextureLook};
 use std::ops::Range;
 
 /// Something to paint on, pixels numbered row by row.
@@ -12,6 +12,10 @@ pub(super) trait PixelCanvas {
 
     /// Paints pixels from number `first` on, each in a colour of the look's palette.
     fn spots(&mut self, looks: &Looks, look: &TextureLook, first: usize, indices: &[u8]);
+
+    /// Paints pixels from number `first` on in colours of a look that shadows fall on: how many eighths of the sun are hidden
+    /// from each, and its place in the look's palette.
+    fn shaded(&mut self, shades: &Shades, first: usize, hidden: &[u8], indices: &[u8]);
 }
 
 /// Three bytes for each pixel.
@@ -36,6 +40,19 @@ impl PixelCanvas for Colours<'_> {
             }
         }
     }
+
+    #[inline(always)]
+    fn shaded(&mut self, shades: &Shades, first: usize, hidden: &[u8], indices: &[u8]) {
+        let [least, step] = shades.offsets;
+        let pixels = self.0[3 * first..].chunks_exact_mut(3);
+        for ((pixel, hidden), index) in pixels.zip(hidden).zip(indices) {
+            let colour = shades.colours[usize::from(*hidden).min(LEVELS - 1)];
+            let by = least + step * i16::from(*index);
+            for (channel, level) in pixel.iter_mut().zip(colour) {
+                *channel = (i16::from(level) + by).clamp(0, 255) as u8;
+            }
+        }
+    }
 }
 
 /// For each pixel the weighted sum of its channels, 256 times its luma.
@@ -52,6 +69,17 @@ impl PixelCanvas for Weights<'_> {
         let [start, step] = look.weights;
         for (pixel, index) in self.0[first..first + indices.len()].iter_mut().zip(indices) {
             *pixel = start.wrapping_add(step.wrapping_mul(u16::from(*index)));
+        }
+    }
+
+    #[inline(always)]
+    fn shaded(&mut self, shades: &Shades, first: usize, hidden: &[u8], indices: &[u8]) {
+        let [least, step] = shades.offsets;
+        let pixels = self.0[first..].iter_mut();
+        for ((pixel, hidden), index) in pixels.zip(hidden).zip(indices) {
+            let weight = shades.weights[usize::from(*hidden).min(LEVELS - 1)];
+            // A grey level more in every channel is 256 more.
+            *pixel = weight.wrapping_add_signed((least + step * i16::from(*index)) << 8);
         }
     }
 }

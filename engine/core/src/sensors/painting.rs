@@ -2,8 +2,10 @@
 
 use super::canvas::PixelCanvas;
 use super::lens::Fisheye;
+use super::pattern::BATCH;
+use super::shadows::Shadows;
 use super::stretches::{Stretch, Stretches};
-use super::texture::{BATCH, Looks, TextureLook};
+use super::texture::{Looks, TextureLook};
 use super::view::Affine;
 use dispatch::Work;
 
@@ -27,6 +29,7 @@ pub(super) struct Painting<'a, C> {
     pub(super) nearness: &'a [Affine],
     pub(super) size_px: [usize; 2],
     pub(super) lens: Option<&'a Fisheye>,
+    pub(super) shadows: Option<&'a Shadows>,
 }
 
 /// Texture coordinates of a batch of places, along and across, metres.
@@ -107,7 +110,13 @@ impl<C: PixelCanvas> Painting<'_, C> {
     #[inline(always)]
     fn spots(&mut self, look: &TextureLook, first: usize, count: usize, [along, across]: &Places) {
         let mut indices = [0; BATCH];
-        look.choose(along, across, &mut indices);
-        self.canvas.spots(self.looks, look, first, &indices[..count]);
+        look.places.choose(along, across, &mut indices);
+        if let (Some(sheet), Some(shadows)) = (look.sheet, self.shadows) {
+            let mut hidden = [0; BATCH];
+            shadows.hidden(sheet, along, across, &mut hidden);
+            self.canvas.shaded(self.looks.shades(sheet), first, &hidden[..count], &indices[..count]);
+        } else {
+            self.canvas.spots(self.looks, look, first, &indices[..count]);
+        }
     }
 }

@@ -82,7 +82,7 @@ mod tests {
             height_m: 0.5,
             tilt_deg,
             noise: 0.0,
-            own_body: false,
+            ..Settings::default().camera
         };
         assert_ne!(camera, Settings::default().camera);
         CameraRays::new(&camera)

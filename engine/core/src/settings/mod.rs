@@ -116,7 +116,23 @@ pub struct CameraSettings {
     pub height_m: f64,
     pub tilt_deg: f64,
     pub noise: f64,
+    pub exposure_drift: f64,
+    pub white_balance_drift: f64,
     pub own_body: bool,
+    /// What becomes of the light that a world file says.
+    pub light: LightSettings,
+}
+
+/// What becomes of the light that a world file says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs, reason = "every field is documented in the table of settings")]
+pub struct LightSettings {
+    pub gain: f64,
+    pub ambient: f64,
+    pub turn_deg: f64,
+    pub raise_deg: f64,
+    pub shadows: bool,
+    pub softness_deg: f64,
 }
 
 /// The laser and its mount.

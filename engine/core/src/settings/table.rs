@@ -148,7 +148,15 @@ settings! {
     camera.height_m, "metres", Number(0.05, 3.0), "Height of the camera above the floor.";
     camera.tilt_deg, "degrees", Number(-30.0, 90.0), "How far the camera looks down.";
     camera.noise, "grey levels", Number(0.0, 64.0), "Deviation of the pixel noise.";
+    camera.exposure_drift, "share", Number(0.0, 0.5), "Deviation of the brightness of whole images, which wanders within some tens of images.";
+    camera.white_balance_drift, "share", Number(0.0, 0.5), "Deviation of red, and of blue against it, which wanders likewise.";
     camera.own_body, "", Flag, "Whether the camera sees the robot's own body where that is in its view.";
+    light.gain in camera, "times", Number(0.05, 5.0), "Brightness of the image, by that in the world file.";
+    light.ambient in camera, "share", Number(-1.0, 1.0), "Added to the share of the light that comes from everywhere; the sum is kept within 0 to 1.";
+    light.turn_deg in camera, "degrees", Number(-180.0, 180.0), "The sun is turned so far to the left, seen from above.";
+    light.raise_deg in camera, "degrees", Number(-90.0, 90.0), "The sun stands so much higher; from the horizon to straight above.";
+    light.shadows in camera, "", Flag, "Whether the sun casts shadows in a world whose file does not say so.";
+    light.softness_deg in camera, "degrees", Number(0.0, 20.0), "Added to the width of the sun: the edges of shadows are as soft as that. The sum is at most 20.";
     laser.beams, "beams", Whole(3, 1441), "Beams over the field of view, both ends included.";
     laser.field_of_view_deg, "degrees", Number(10.0, 360.0), "From the first beam to the last; 360 looks all round.";
     laser.forward_m, "metres", Number(-1.0, 1.0), "Place of the laser ahead of the robot's centre.";

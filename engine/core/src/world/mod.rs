@@ -9,6 +9,7 @@ mod drivetrain;
 mod families;
 mod floor_squares;
 mod layout;
+mod light;
 pub(crate) mod marks;
 mod movements;
 mod mover;

@@ -5,3 +5,4 @@ mod camera;
 mod laser;
 mod oracle;
 mod repeat;
+mod shadows;
