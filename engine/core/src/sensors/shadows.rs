@@ -5,7 +5,7 @@
 
 use super::drawing::Polygon;
 use super::pattern::BATCH;
-use super::sheet::{Cells, Sheet};
+use super::sheet::{Area, Cells, Sheet};
 use super::surface::{Face, Surfaces};
 use crate::geometry::Vector3;
 use crate::world::scene::{Light, Scene, Solid};
@@ -39,8 +39,8 @@ pub(super) struct Shadows {
     /// With what moves; empty until something does.
     now: Vec<u8>,
     casters: Surfaces,
-    /// Sheets on which something has cast that may stand elsewhere now.
-    touched: Vec<u32>,
+    /// Sheets and areas of them on which something has cast that may stand elsewhere now.
+    touched: Vec<(u32, Area)>,
 }
 
 impl Shadows {
@@ -69,6 +69,7 @@ impl Shadows {
             touched: Vec::with_capacity(MOST_TOUCHED),
         };
         shadows.standing = Arc::new(shadows.cast_standing(scene, surfaces, cells));
+        shadows.sheets.iter_mut().for_each(|sheet| sheet.survey(&shadows.standing));
         Some(Box::new(shadows))
     }
 
@@ -102,9 +103,8 @@ impl Shadows {
     /// Casts the shadows of what moves on the floor and on these solids of the scene. Allocates when something moves for the
     /// first time.
     pub(super) fn cast_moving(&mut self, moving: &[Solid], surfaces: &Surfaces, seen: &[usize]) {
-        for &sheet in &self.touched {
-            let sheet = &self.sheets[sheet as usize];
-            self.now[sheet.range()].copy_from_slice(&self.standing[sheet.range()]);
+        for (sheet, area) in &self.touched {
+            self.sheets[*sheet as usize].restore(area, &mut self.now, &self.standing);
         }
         self.touched.clear();
         if moving.is_empty() {
@@ -120,20 +120,20 @@ impl Shadows {
         let faces = seen.iter().flat_map(|&solid| surfaces.of_solid(solid)).map(|face| self.sheet_of_face[face]);
         for number in std::iter::once(0).chain(faces).filter(|sheet| *sheet != NO_SHEET) {
             let sheet = &self.sheets[number as usize];
-            let mut touched = false;
+            let mut cells = sheet.cells(&mut self.now);
             for (index, solid) in moving.iter().enumerate() {
                 let (min, max) = solid.bounds();
                 let single = |point: crate::geometry::Point3| [point.x as f32, point.y as f32, point.z as f32];
                 for (sun, bit) in &self.suns {
                     if sheet.normal.dot(sun) > 1e-9 && sheet.may_be_shaded_by(sun, &single(min), &single(max)) {
                         let faces = &self.casters.faces()[self.casters.of_solid(index)];
-                        touched = true;
-                        cast(sheet, &mut sheet.cells(&mut self.now), &self.casters, faces, (sun, *bit));
+                        cast(sheet, &mut cells, &self.casters, faces, (sun, *bit));
                     }
                 }
             }
-            if touched {
-                self.touched.push(number);
+            let area = cells.drawn;
+            if area.is_some() {
+                self.touched.push((number, area));
             }
         }
     }
@@ -156,6 +156,14 @@ impl Shadows {
             );
         }
         1.0 - f64::from(hidden.count_ones()) / 8.0
+    }
+
+    /// Whether all of the sun is hidden from, or seen from, all places on a line between two of a sheet; nothing if that is not
+    /// known.
+    #[inline(always)]
+    pub(super) fn same_between(&self, sheet: u32, ends: &[[f32; 2]; 2]) -> Option<bool> {
+        let changed = self.touched.iter().find(|(touched, _)| *touched == sheet).map(|(_, area)| area);
+        self.sheets[sheet as usize].same_between(ends, changed)
     }
 
     /// How many eighths of the sun are hidden from places on a sheet; metres along the surface's two axes.

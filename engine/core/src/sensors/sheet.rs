@@ -9,6 +9,10 @@ use std::ops::Range;
 const CELL_M: f64 = 0.015;
 /// Most cells of the floor, and of all faces together: where they would be more, they are larger.
 const MOST_CELLS: f64 = 4_000_000.0;
+/// Cells along the edge of a block.
+const BLOCK: usize = 16;
+/// Most blocks that are looked at to find whether places are all alike.
+const MOST_BLOCKS: usize = 12;
 /// Fewest cells from edge to edge: the outermost of a floor keep clear.
 const LEAST_CELLS: usize = 3;
 /// Adding 1.5 * 2^23 rounds a small number to a whole one, which then stands in the low bits.
@@ -35,10 +39,48 @@ pub(super) struct Sheet {
     columns: usize,
     rows: usize,
     per_m: f64,
+    /// Row by row: what its cells have in common, of blocks of the cells.
+    blocks: Vec<Common>,
 }
 
-/// The cells of one sheet.
-pub(super) struct Cells<'a>(&'a mut [u8]);
+/// What the cells of a block have in common.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Common {
+    Sun,
+    Shade,
+    Nothing,
+}
+
+/// The cells of one sheet, and which of them were drawn on.
+pub(super) struct Cells<'a> {
+    all: &'a mut [u8],
+    pub(super) drawn: Area,
+}
+
+/// A rectangle of cells: from the first column and row to those before the last.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Area {
+    first: [usize; 2],
+    last: [usize; 2],
+}
+
+impl Area {
+    const NONE: Self = Self { first: [usize::MAX; 2], last: [0; 2] };
+
+    fn hold(&mut self, columns: &Range<usize>, row: usize) {
+        self.first = [self.first[0].min(columns.start), self.first[1].min(row)];
+        self.last = [self.last[0].max(columns.end), self.last[1].max(row + 1)];
+    }
+
+    /// Whether there is a cell in it.
+    pub(super) fn is_some(&self) -> bool {
+        self.last[0] > 0
+    }
+
+    fn meets_blocks(&self, low: [usize; 2], high: [usize; 2]) -> bool {
+        (0..2).all(|axis| self.first[axis] < (high[axis] + 1) * BLOCK && low[axis] * BLOCK < self.last[axis])
+    }
+}
 
 impl Sheet {
     /// The floor between least and greatest coordinates; a dot if shadows lie nowhere.
@@ -61,6 +103,7 @@ impl Sheet {
             columns: 0,
             rows: 0,
             per_m: 0.0,
+            blocks: Vec::new(),
         }
     }
 
@@ -81,8 +124,8 @@ impl Sheet {
         }
         let [along, across] = axes;
         let (normal, offset_m, origin) = (face.normal, face.offset_m, face.origin);
-        let (endless, first, columns, rows, per_m) = (false, 0, 0, 0, 0.0);
-        Self { normal, offset_m, origin, along, across, low, high, min, max, endless, first, columns, rows, per_m }
+        let floor = Self::of_floor(None);
+        Self { normal, offset_m, origin, along, across, low, high, min, max, endless: false, ..floor }
     }
 
     fn area(&self) -> f64 {
@@ -113,12 +156,73 @@ impl Sheet {
 
     /// Its cells among all.
     pub(super) fn cells<'a>(&self, all: &'a mut [u8]) -> Cells<'a> {
-        Cells(&mut all[self.range()])
+        Cells { all: &mut all[self.range()], drawn: Area::NONE }
+    }
+
+    /// Makes an area of some cells as it is in others.
+    pub(super) fn restore(&self, area: &Area, cells: &mut [u8], from: &[u8]) {
+        for row in area.first[1]..area.last[1] {
+            let row = self.first + row * self.columns;
+            let cells_of_row = row + area.first[0]..row + area.last[0];
+            cells[cells_of_row.clone()].copy_from_slice(&from[cells_of_row]);
+        }
     }
 
     /// Whether something within these bounds may stand between the surface and a sun.
     pub(super) fn may_be_shaded_by(&self, sun: &Vector3, min: &[f32; 3], max: &[f32; 3]) -> bool {
         sweep_meets(&self.min, &self.max, sun, min, max)
+    }
+
+    /// Looks which blocks of its cells are all alike.
+    pub(super) fn survey(&mut self, all: &[u8]) {
+        let cells = &all[self.range()];
+        let per_row = self.columns.div_ceil(BLOCK);
+        self.blocks.clear();
+        for block in 0..per_row * self.rows.div_ceil(BLOCK) {
+            let (left, top) = (block % per_row * BLOCK, block / per_row * BLOCK);
+            let columns = left..self.columns.min(left + BLOCK);
+            let mut rows = (top..self.rows.min(top + BLOCK)).map(|row| &cells[row * self.columns..][columns.clone()]);
+            let first = cells[top * self.columns + left];
+            let alike = matches!(first, 0 | u8::MAX) && rows.all(|row| row.iter().all(|cell| *cell == first));
+            self.blocks.push(match (alike, first) {
+                (false, _) => Common::Nothing,
+                (true, 0) => Common::Sun,
+                (true, _) => Common::Shade,
+            });
+        }
+    }
+
+    /// Whether all cells within a rectangle that holds two places lie in the shade, or all in the sun; nothing if that is not
+    /// known. `changed` has been drawn on since the cells were surveyed.
+    #[inline(always)]
+    pub(super) fn same_between(&self, ends: &[[f32; 2]; 2], changed: Option<&Area>) -> Option<bool> {
+        let (from, to) = (self.block_of(ends[0]), self.block_of(ends[1]));
+        let (left, right) = (from[0].min(to[0]), from[0].max(to[0]));
+        let (low, high) = (from[1].min(to[1]), from[1].max(to[1]));
+        if (right - left + 1) * (high - low + 1) > MOST_BLOCKS
+            || changed.is_some_and(|area| area.meets_blocks([left, low], [right, high]))
+        {
+            return None;
+        }
+        let per_row = self.columns.div_ceil(BLOCK);
+        let common = *self.blocks.get(low * per_row + left)?;
+        for row in low..=high {
+            let blocks = self.blocks.get(row * per_row + left..=row * per_row + right)?;
+            if blocks.iter().any(|block| *block != common) {
+                return None;
+            }
+        }
+        (common != Common::Nothing).then_some(common == Common::Shade)
+    }
+
+    #[inline(always)]
+    fn block_of(&self, place: [f32; 2]) -> [usize; 2] {
+        let per_m = self.per_m as f32;
+        let block = |axis: usize, cells: usize| {
+            let cell = ((place[axis] - self.low[axis] as f32) * per_m).max(0.0).min((cells - 1) as f32);
+            whole_below(cell) as usize / BLOCK
+        };
+        [block(0, self.columns), block(1, self.rows)]
     }
 
     /// How many bits are set in the cells of places, metres along both axes.
@@ -153,7 +257,7 @@ fn whole_below(value: f32) -> u32 {
 impl Cells<'_> {
     /// Sets the bits in all cells.
     pub(super) fn fill(&mut self, bits: u8) {
-        self.0.iter_mut().for_each(|cell| *cell |= bits);
+        self.all.iter_mut().for_each(|cell| *cell |= bits);
     }
 
     /// Sets the bits in all cells whose middles lie within a convex polygon of points in the sheet's plane.
@@ -181,8 +285,9 @@ impl Cells<'_> {
             }
             let columns = within(left, sheet.columns)..within(right, sheet.columns);
             let base = row * sheet.columns;
-            if let Some(cells) = self.0.get_mut(base + columns.start..base + columns.end) {
+            if let Some(cells) = self.all.get_mut(base + columns.start..base + columns.end) {
                 cells.iter_mut().for_each(|cell| *cell |= bits);
+                self.drawn.hold(&columns, row);
             }
         }
     }

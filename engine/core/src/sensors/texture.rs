@@ -45,6 +45,8 @@ pub(super) struct Looks {
     palette: Vec<[u8; 4]>,
     /// By sheet.
     shades: Vec<Shades>,
+    /// By sheet: how it looks where all of the sun is hidden.
+    dark: Vec<TextureLook>,
     range: Extremes,
 }
 
@@ -163,10 +165,18 @@ impl Looks {
         let offsets = look.offsets;
         let last = self.palette.len().saturating_sub(look.palette_start + 1) as i16;
         look.sheet = Some(self.shades.len() as u32);
+        self.push(material, light.partly_on(normal, 0.0));
+        self.dark.extend(self.looks.pop());
         self.shades.push(Shades { colours, weights: colours.map(weight), offsets });
         for by in [offsets[0], offsets[0] + offsets[1] * last] {
             colours.into_iter().for_each(|colour| self.widen(lighter(colour.map(f64::from), f64::from(by))));
         }
+    }
+
+    /// The look of a sheet where all of the sun is hidden.
+    #[inline(always)]
+    pub(super) fn dark(&self, sheet: u32) -> &TextureLook {
+        &self.dark[sheet as usize]
     }
 
     /// The shades of a sheet.

@@ -79,6 +79,7 @@ fn camera() -> CameraSettings {
         exposure_drift: 0.0,
         white_balance_drift: 0.0,
         own_body: false,
+        deck_m: 0.25,
         light: LightSettings {
             gain: 1.0,
             ambient: 0.0,

@@ -119,6 +119,7 @@ pub struct CameraSettings {
     pub exposure_drift: f64,
     pub white_balance_drift: f64,
     pub own_body: bool,
+    pub deck_m: f64,
     /// What becomes of the light that a world file says.
     pub light: LightSettings,
 }

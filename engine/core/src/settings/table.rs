@@ -151,6 +151,7 @@ settings! {
     camera.exposure_drift, "share", Number(0.0, 0.5), "Deviation of the brightness of whole images, which wanders within some tens of images.";
     camera.white_balance_drift, "share", Number(0.0, 0.5), "Deviation of red, and of blue against it, which wanders likewise.";
     camera.own_body, "", Flag, "Whether the camera sees the robot's own body where that is in its view.";
+    camera.deck_m, "metres", Number(0.01, 5.0), "Height of the body as its own camera sees it, without what stands on it; at most the body's height, which it is for a body file that does not say it.";
     light.gain in camera, "times", Number(0.05, 5.0), "Brightness of the image, by that in the world file.";
     light.ambient in camera, "share", Number(-1.0, 1.0), "Added to the share of the light that comes from everywhere; the sum is kept within 0 to 1.";
     light.turn_deg in camera, "degrees", Number(-180.0, 180.0), "The sun is turned so far to the left, seen from above.";
