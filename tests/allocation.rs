@@ -96,6 +96,15 @@ fn more_steps_allocate_nothing_more_with_a_table() {
 }
 
 #[test]
+fn the_shadow_of_a_mover_allocates_nothing_more() {
+    let behaviour = Behaviour::load(&root().join("scripts/object.rhai")).unwrap();
+    let set = ["light.shadows=true", "camera.own_body=true", "camera.exposure_drift=0.1"].map(str::to_owned);
+    let overrides = Overrides { set: set.to_vec(), ..Overrides::default() };
+    let plan = Plan::new(Arc::new(behaviour), &overrides).unwrap();
+    assert_eq!(allocations(&plan, 5_000), allocations(&plan, 1_000));
+}
+
+#[test]
 fn more_steps_through_scharr_allocate_nothing_more() {
     let path = root().join("scripts/wall.rhai");
     let text = std::fs::read_to_string(&path).unwrap().replace("\"sobel\"", "\"scharr\"");

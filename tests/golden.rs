@@ -53,6 +53,9 @@ const VARIANTS: &[(&str, &str)] = &[
     ("wall", "camera.lens=fisheye"),
     ("wall", "recovery.to=start"),
     ("wall", "world=room-textured"),
+    ("wall", "world=room-shadows-tiles"),
+    ("object", "light.shadows=true"),
+    ("wall-left", "camera.exposure_drift=0.2"),
     ("wall-left", "grid.fill=false"),
 ];
 

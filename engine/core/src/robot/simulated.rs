@@ -5,12 +5,15 @@ use std::sync::Arc;
 use super::journey::Journey;
 use super::site::{Site, in_view};
 use super::{Ended, Robot, Whereabouts};
-use crate::diagnostic::Result;
+use crate::diagnostic::{Diagnostic, Result};
 use crate::geometry::{Pose, Twist};
 use crate::sensors::observation::{Image, Observation};
 use crate::sensors::{CameraWatch, self_test};
 use crate::settings::Settings;
 use crate::world::{Layout, Motion, World, WorldSet};
+
+/// Most solids of a world with shadows.
+const MOST_SHADED_SOLIDS: usize = 1000;
 
 /// A robot with a body, a camera and a laser, in a world; or in one world after another.
 pub struct SimulatedRobot {
@@ -40,6 +43,7 @@ impl SimulatedRobot {
     /// # Errors
     /// As [`SimulatedRobot::new`].
     pub fn in_worlds(worlds: &WorldSet, settings: &Settings, seed: u64) -> Result<Self> {
+        worlds.layouts().iter().try_for_each(|layout| check_shadows(layout, settings))?;
         let mut here = Site::new(worlds.home(), settings, seed, 0);
         let varies = !worlds.further().is_empty() || !settings.randomise.is_empty();
         let mut journey = varies.then(|| Box::new(Journey::new(worlds, settings, seed)));
@@ -71,6 +75,22 @@ impl SimulatedRobot {
     pub fn world(&self) -> &World {
         &self.here.world
     }
+}
+
+/// The baking of shadows is bounded by the number of solids.
+fn check_shadows(layout: &Layout, settings: &Settings) -> Result<()> {
+    let parts = layout.scene.parts();
+    let drawn = settings.randomise.iter().any(|varied| varied.key == "light.shadows");
+    let asked = parts.light.shadows || settings.camera.light.shadows || drawn;
+    if !asked || parts.solids.len() <= MOST_SHADED_SOLIDS {
+        return Ok(());
+    }
+    let message = format!(
+        "the world '{}' has {} solids: shadows are for worlds of at most {MOST_SHADED_SOLIDS}",
+        layout.name,
+        parts.solids.len()
+    );
+    Diagnostic::new("E-WORLD-SHADOWS", message).help("join solids, take some out, or leave light.shadows off").fail()
 }
 
 impl Robot for SimulatedRobot {

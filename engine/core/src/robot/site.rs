@@ -12,6 +12,14 @@ use crate::world::{Layout, World};
 /// Between the seeds of two worlds of a run: their noise is not the same. The home world has the run's own seed.
 const SEED_APART: u64 = 0x9e37_79b9_7f4a_7c15;
 
+/// The robot's body as its own camera sees it.
+#[derive(Debug, Clone)]
+pub(super) struct OwnBody {
+    height_m: f64,
+    /// What moves, and room for the body.
+    solids: Vec<Solid>,
+}
+
 /// A world, and what the robot has there.
 pub(super) struct Site {
     pub(super) world: World,
@@ -23,8 +31,8 @@ pub(super) struct Site {
     /// Made when somebody first asks for the ground.
     ground: Option<GroundSensors>,
     pub(super) recovery: Recovery,
-    /// Where the camera sees the robot's own body: what it sees that moves, and room for it.
-    pub(super) own: Option<Vec<Solid>>,
+    /// Where the camera sees the robot's own body.
+    pub(super) own: Option<OwnBody>,
     seed: u64,
 }
 
@@ -34,7 +42,11 @@ impl Site {
         let seed = seed_of_world(seed, number);
         let world = World::new(Arc::clone(layout), &[settings.robot], settings.run.period_s, seed)
             .with_mover_speed(settings.movers.speed);
-        let own = settings.camera.own_body.then(|| Vec::with_capacity(world.seen_by(0).len() + 1));
+        let room = world.seen_by(0).len() + 1;
+        let own = settings.camera.own_body.then(|| OwnBody {
+            height_m: settings.camera.deck_m.min(settings.robot.body.height_m),
+            solids: Vec::with_capacity(room),
+        });
         Self {
             world,
             scene: Arc::clone(&layout.scene),
@@ -98,10 +110,10 @@ pub(crate) fn seed_of_world(seed: u64, number: usize) -> u64 {
 }
 
 /// What the camera sees that does not belong to the scene: what moves, and the robot's own body if `own` has room for it.
-pub(super) fn in_view<'a>(world: &'a World, own: &'a mut Option<Vec<Solid>>) -> &'a [Solid] {
-    let Some(solids) = own else { return world.seen_by(0) };
+pub(super) fn in_view<'a>(world: &'a World, own: &'a mut Option<OwnBody>) -> &'a [Solid] {
+    let Some(OwnBody { height_m, solids }) = own else { return world.seen_by(0) };
     solids.clear();
     solids.extend_from_slice(world.seen_by(0));
-    solids.push(world.solid_of(0));
+    solids.push(world.solid_of(0, *height_m));
     solids
 }

@@ -84,7 +84,7 @@ impl Touched {
         match key {
             VariedKey::Setting(row) => match row.group {
                 "robot" => self.drive = true,
-                "camera" => self.camera = true,
+                "camera" | "light" => self.camera = true,
                 "laser" => self.laser = true,
                 "movers" => self.movers = true,
                 _ => self.recovery = true,

@@ -71,6 +71,7 @@ pub(super) const SETUP: &[SetupCall] = &[
         "The robot: the name of its body, and how it moves. Without a name it is `pioneer2at`.",
     ),
     row("camera", "camera(#{ tilt_deg: 42 });", "The camera and its mount."),
+    row("light", "light(#{ shadows: true });", "What becomes of the light that the world file says."),
     row("laser", "laser(#{ tilt_deg: 45 });", "The laser and its mount."),
     row("ground", "ground(#{ ahead_m: 0.1, aside_m: 0.15 });", "Three sensors that look down at paint and floor."),
     row("grid", "grid(#{ rows: 3, columns: 3 });", "How a filtered image becomes a state."),

@@ -7,14 +7,16 @@ use super::luma;
 use super::noise::PixelNoise;
 use super::observation::Image;
 use super::painting::{Drawn, Painting};
+use super::shadows::Shadows;
 use super::spans::Spans;
 use super::stretches::{FLOOR_FACE, OUTSIDE_LENS, SKY_FACE, Sight, Stretches};
 use super::surface::Surfaces;
 use super::texture::{Looks, PaintMark};
+use super::tint::Drift;
 use super::view::{Affine, CameraView, Frustum, Pinhole};
 use crate::geometry::{Isometry3, Point3, Vector3};
 use crate::settings::{CameraSettings, Lens};
-use crate::world::scene::{Scene, Solid};
+use crate::world::scene::{Light, Scene, Solid};
 use dispatch::Processor;
 use filter_api::Format;
 use std::sync::Arc;
@@ -38,9 +40,12 @@ pub struct Camera {
     fisheye: Option<Fisheye>,
     noise: Option<PixelNoise>,
     depth: depth::DepthSensor,
+    drift: Option<Drift>,
     frame: u64,
     /// In the robot's axes: the lens's place, and right, down and forward.
     mount: [Vector3; 4],
+    light: Light,
+    shadows: Option<Box<Shadows>>,
     surfaces: Surfaces,
     moving: Surfaces,
     looks: Looks,
@@ -73,16 +78,23 @@ impl Camera {
             Vector3::new(cos, 0.0, -sin),
         ];
         let parts = scene.parts();
+        let light = parts.light.changed(&settings.light);
         let surfaces = Surfaces::new(&parts.solids);
+        let shadows = Shadows::new(scene, &light, &surfaces);
         let mut looks = Looks::default();
         looks.push_plain(SKY);
-        looks.push(&parts.materials[parts.floor], &parts.light, &Vector3::z());
+        looks.push(&parts.materials[parts.floor], light.on(&Vector3::z()));
+        if shadows.is_some() {
+            looks.shade(&parts.materials[parts.floor], &light, &Vector3::z());
+        }
         let black = fisheye.as_ref().is_some_and(Fisheye::has_outside);
         looks.push_plain(if black { [0; 3] } else { SKY });
-        let mut faces = 0;
-        for face in surfaces.faces() {
-            faces += 1;
-            looks.push(&parts.materials[face.material], &parts.light, &face.normal);
+        let faces = surfaces.faces().len();
+        for (index, face) in surfaces.faces().iter().enumerate() {
+            looks.push(&parts.materials[face.material], light.on(&face.normal));
+            if shadows.as_ref().is_some_and(|shadows| shadows.falls_on(index)) {
+                looks.shade(&parts.materials[face.material], &light, &face.normal);
+            }
         }
         looks.reserve(MOVING_FACES);
         Self {
@@ -93,8 +105,11 @@ impl Camera {
             fisheye,
             noise: PixelNoise::new(settings.noise, seed),
             depth: depth::DepthSensor::new(settings, seed),
+            drift: Drift::new(settings, seed),
             frame: 0,
             mount,
+            light,
+            shadows,
             surfaces,
             moving: Surfaces::with_room(),
             standing_looks: looks.mark(),
@@ -145,6 +160,9 @@ impl Camera {
         self.find_visible(&view, &frustum);
         if let Some(image) = image {
             self.fit(image);
+            if let Some(shadows) = &mut self.shadows {
+                shadows.cast_moving(moving, &self.surfaces, &self.seen);
+            }
             self.list();
             if image.format == Format::Rgb { self.paint(&mut image.pixels) } else { self.paint_grey(&mut image.pixels) }
         }
@@ -186,12 +204,16 @@ impl Camera {
             nearness: &self.nearness,
             size_px: [self.width_px, self.height_px],
             lens: self.fisheye.as_ref(),
+            shadows: self.shadows.as_deref(),
         });
     }
 
     /// Paints three bytes for each pixel.
     fn paint(&self, pixels: &mut [u8]) {
         self.paint_on(Colours(pixels));
+        if let Some(drift) = &self.drift {
+            drift.tint(self.processor, self.frame, pixels);
+        }
         if let Some(noise) = &self.noise {
             noise.add(self.processor, self.frame, pixels, self.width_px * 3);
         }
@@ -200,8 +222,8 @@ impl Camera {
     /// Paints one byte for each pixel.
     fn paint_grey(&mut self, pixels: &mut [u8]) {
         let most = self.noise.as_ref().map_or(0, PixelNoise::most);
-        if !self.looks.keep_within(most.max(1)) {
-            // Noise is cut off at black and white channel by channel.
+        if self.drift.is_some() || !self.looks.keep_within(most.max(1)) {
+            // Noise is cut off at black and white channel by channel, and so is a drift.
             let mut colours = std::mem::take(&mut self.colours);
             colours.resize(pixels.len() * 3, 0);
             self.paint(&mut colours);
@@ -241,10 +263,12 @@ impl Camera {
             let single = |point: Point3| [point.x as f32, point.y as f32, point.z as f32];
             if frustum.meets(&single(min), &single(max)) {
                 self.moving.push(solid);
+                let (shadows, middle) = (self.shadows.as_deref(), solid.centre.coords);
+                let share = shadows.map_or(1.0, |shadows| shadows.seen_from(&middle, &self.scene, &self.surfaces));
+                for face in self.moving.of_last() {
+                    self.looks.push(&parts.materials[face.material], self.light.partly_on(&face.normal, share));
+                }
             }
-        }
-        for face in self.moving.faces() {
-            self.looks.push(&parts.materials[face.material], &parts.light, &face.normal);
         }
     }
 

@@ -56,24 +56,24 @@ impl Drawing<'_> {
 }
 
 /// A convex polygon on its way through the clipping planes.
-struct Polygon {
+pub(super) struct Polygon {
     points: [Vector3; MOST_CORNERS],
     count: usize,
 }
 
 impl Polygon {
-    fn new(vertices: &[Vector3]) -> Self {
+    pub(super) fn new(vertices: &[Vector3]) -> Self {
         let mut points = [Vector3::zeros(); MOST_CORNERS];
         points[..vertices.len()].copy_from_slice(vertices);
         Self { points, count: vertices.len() }
     }
 
-    fn points_mut(&mut self) -> &mut [Vector3] {
+    pub(super) fn points_mut(&mut self) -> &mut [Vector3] {
         &mut self.points[..self.count]
     }
 
     /// Keeps the part where `inside`, which is affine, is not negative (Sutherland and Hodgman 1974).
-    fn clip(&mut self, inside: impl Fn(&Vector3) -> f64) {
+    pub(super) fn clip(&mut self, inside: impl Fn(&Vector3) -> f64) {
         let (points, count) = (self.points, self.count);
         self.count = 0;
         for index in 0..count {

@@ -1,10 +1,11 @@
 //! Three downward sensors with lamps of their own: the colour of the ground under them, without shadow or noise.
 
+use super::pattern::BATCH;
 use super::surface::{CYLINDER_SIDES, Surfaces};
-use super::texture::{BATCH, Looks};
+use super::texture::Looks;
 use crate::geometry::{Isometry3, Point3, Vector3};
 use crate::settings::GroundSettings;
-use crate::world::scene::{Light, Scene, Shape, Solid};
+use crate::world::scene::{Scene, Shape, Solid};
 
 /// Ground so much higher than the robot's own is no longer under it, metres.
 const ABOVE_M: f64 = 0.05;
@@ -12,7 +13,6 @@ const ABOVE_M: f64 = 0.05;
 const BELOW_M: f64 = 0.10;
 /// How far paint stands off what it is painted on is nothing to a lamp: a tie is the later solid's.
 const TIE_M: f64 = 1e-9;
-const LAMP: Light = Light { towards: Vector3::new(0.0, 0.0, 1.0), ambient: 1.0, gain: 1.0 };
 
 /// The colours under the three sensors: the middle one, the left one, the right one. Red, green, blue; black off the ground.
 pub type GroundColours = [[u8; 3]; 3];
@@ -34,7 +34,7 @@ impl GroundSensors {
     pub fn new(scene: &Scene, settings: &GroundSettings) -> Self {
         let mut looks = Looks::default();
         for material in &scene.parts().materials {
-            looks.push(material, &LAMP, &LAMP.towards);
+            looks.push(material, 1.0);
         }
         let place = |aside_m: f64| Point3::new(settings.ahead_m, aside_m, 0.0);
         let places = [place(0.0), place(settings.aside_m), place(-settings.aside_m)];
@@ -83,7 +83,7 @@ impl GroundSensors {
             return [look.pattern[0], look.pattern[1], look.pattern[2]];
         }
         let mut indices = [0; BATCH];
-        look.choose(&[along_m as f32; BATCH], &[across_m as f32; BATCH], &mut indices);
+        look.places.choose(&[along_m as f32; BATCH], &[across_m as f32; BATCH], &mut indices);
         let [red, green, blue, _] = self.looks.palette(look)[usize::from(indices[0])];
         [red, green, blue]
     }
@@ -121,7 +121,7 @@ fn covers(solid: &Solid, at: Point3) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::scene::{Material, SceneParts, Texture};
+    use crate::world::scene::{Light, Material, SceneParts, Texture};
     use std::f64::consts::FRAC_PI_2;
 
     fn scene() -> Scene {
@@ -142,7 +142,7 @@ mod tests {
         // A painted stripe 0.1 m wide along x at y = 0.2, and a slab 0.3 m high from x = 4 to 6. Both are turned by 90 degrees.
         let paint = boxed(Point3::new(0.0, 0.2, 0.0), Vector3::new(0.05, 2.0, 0.001), 1, false);
         let slab = boxed(Point3::new(5.0, 0.0, 0.15), Vector3::new(1.0, 1.0, 0.15), 2, true);
-        let light = Light { towards: Vector3::z(), ambient: 0.1, gain: 0.3 };
+        let light = Light::from_direction(Vector3::z(), 0.1, 0.3);
         Scene::new(SceneParts { solids: vec![paint, slab], materials, floor: 0, light })
     }
 

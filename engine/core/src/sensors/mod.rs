@@ -2,7 +2,7 @@
 //!
 //! Both sensors work from the flat faces of solids (`surface`). The camera finds which face is seen in which run of
 //! each row (`view`, `drawing`, `spans`), lists the runs pixel by pixel (`stretches`) and
-//! colours them (`texture`, `painting`, `canvas`, `luma`). Three sensors look at the ground (`ground`). Images from elsewhere come as
+//! colours them (`texture`, `pattern`, `shadows`, `painting`, `canvas`, `tint`, `luma`). Three sensors look at the ground (`ground`). Images from elsewhere come as
 //! photographs (`photograph`, with the cargo feature `photographs`).
 
 pub mod observation;
@@ -16,13 +16,17 @@ mod lens;
 mod luma;
 mod noise;
 mod painting;
+mod pattern;
 #[cfg(feature = "photographs")]
 mod photograph;
 mod rays;
+mod shadows;
+mod sheet;
 mod spans;
 mod stretches;
 mod surface;
 mod texture;
+mod tint;
 mod view;
 mod watch;
 

@@ -2,8 +2,10 @@
 
 use super::canvas::PixelCanvas;
 use super::lens::Fisheye;
+use super::pattern::BATCH;
+use super::shadows::Shadows;
 use super::stretches::{Stretch, Stretches};
-use super::texture::{BATCH, Looks, TextureLook};
+use super::texture::{Looks, TextureLook};
 use super::view::Affine;
 use dispatch::Work;
 
@@ -27,6 +29,7 @@ pub(super) struct Painting<'a, C> {
     pub(super) nearness: &'a [Affine],
     pub(super) size_px: [usize; 2],
     pub(super) lens: Option<&'a Fisheye>,
+    pub(super) shadows: Option<&'a Shadows>,
 }
 
 /// Texture coordinates of a batch of places, along and across, metres.
@@ -56,7 +59,10 @@ impl<C: PixelCanvas> Work for Painting<'_, C> {
                         self.places_through(*stretch, &lens.xs[from..from + count], &lens.ys[from..from + count])
                     }
                 };
-                self.spots(look, from, count, &places);
+                match look.sheet.zip(self.shadows) {
+                    None => self.spots(look, from, count, &places),
+                    Some((sheet, shadows)) => self.shaded(look, (sheet, shadows), from, count, &places),
+                }
                 from += count;
             }
         }
@@ -104,10 +110,39 @@ impl<C: PixelCanvas> Painting<'_, C> {
         places
     }
 
+    /// Paints what lies all in the sun or all in the shade as if there were nothing else.
+    #[inline(always)]
+    fn shaded(
+        &mut self,
+        look: &TextureLook,
+        (sheet, shadows): (u32, &Shadows),
+        first: usize,
+        count: usize,
+        places: &Places,
+    ) {
+        let [along, across] = places;
+        // Places in a row of the image lie on a line: between its ends.
+        let ends = [[along[0], across[0]], [along[count - 1], across[count - 1]]];
+        let all = if self.lens.is_none() { shadows.same_between(sheet, &ends) } else { None };
+        let Some(hidden) = all else {
+            let (mut indices, mut hidden) = ([0; BATCH], [0; BATCH]);
+            look.places.choose(along, across, &mut indices);
+            shadows.hidden(sheet, along, across, &mut hidden);
+            self.canvas.shaded(self.looks.shades(sheet), first, count, &hidden, &indices);
+            return;
+        };
+        let look = if hidden { self.looks.dark(sheet) } else { look };
+        if look.places.is_plain() {
+            self.canvas.fill(look, first..first + count);
+        } else {
+            self.spots(look, first, count, places);
+        }
+    }
+
     #[inline(always)]
     fn spots(&mut self, look: &TextureLook, first: usize, count: usize, [along, across]: &Places) {
         let mut indices = [0; BATCH];
-        look.choose(along, across, &mut indices);
-        self.canvas.spots(self.looks, look, first, &indices[..count]);
+        look.places.choose(along, across, &mut indices);
+        self.canvas.spots(self.looks, look, first, count, &indices);
     }
 }

@@ -1,8 +1,8 @@
 //! The image as a list: from which pixel on which face is seen.
 
 use super::lens::Fisheye;
+use super::pattern::BATCH;
 use super::spans::Spans;
-use super::texture::BATCH;
 use super::view::{Affine, Pinhole};
 
 /// Numbers of the three things that are always there, among drawn faces and looks alike.

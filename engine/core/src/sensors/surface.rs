@@ -101,6 +101,11 @@ impl Surfaces {
         self.solids[solid].clone()
     }
 
+    /// The faces of the solid that was added last.
+    pub(super) fn of_last(&self) -> &[Face] {
+        self.solids.last().map_or(&[], |faces| &self.faces[faces.clone()])
+    }
+
     /// The corners of a face.
     pub(super) fn vertices(&self, face: &Face) -> &[Vector3] {
         &self.vertices[face.vertices.clone()]

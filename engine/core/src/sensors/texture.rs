@@ -1,26 +1,15 @@
-//! How a lit surface looks: its colours, and which of them a place on it has.
+//! How a lit surface looks: its colours.
 
 use super::luma::weight;
+use super::pattern::Pattern;
 use crate::geometry::Vector3;
-use crate::world::scene::{Light, Material, Texture};
-use std::sync::LazyLock;
+use crate::world::scene::{Light, Material};
 
-/// Pixels that are textured at once.
-pub(super) const BATCH: usize = 32;
+/// How much of the sun may be hidden from a place: none of it, one eighth, ..., all of it.
+pub(super) const LEVELS: usize = 9;
+
 /// Pixels in a prepared stretch of plain colour.
 pub(super) const PATTERN_PX: usize = 16;
-/// Lattice points of the noise texture along each axis; then it repeats.
-const LATTICE: usize = 128;
-
-/// How the places of a surface choose among its colours.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum TextureChoice {
-    Plain,
-    Checker,
-    Stripes,
-    /// The amplitude, which is the middle colour's index.
-    Noise(f32),
-}
 
 /// The finished colours of one face.
 #[derive(Debug, Clone)]
@@ -32,10 +21,21 @@ pub(super) struct TextureLook {
     /// The weighted sum of the first colour in the palette, and how much more that of each next one is; true unless a
     /// colour is black or white in some channel.
     pub(super) weights: [u16; 2],
-    choice: TextureChoice,
-    per_m: f32,
+    pub(super) places: Pattern,
     /// First colour of this look in the palette.
     palette_start: usize,
+    /// Grey levels that the first colour of the palette adds to the plain one, and how many more each next one adds.
+    offsets: [i16; 2],
+    /// Where shadows may fall on it: the number of its sheet and of its shades.
+    pub(super) sheet: Option<u32>,
+}
+
+/// The plain colour of a look, and its weighted sum, for each share of the sun that is hidden; and what its texture adds.
+#[derive(Debug, Clone)]
+pub(super) struct Shades {
+    pub(super) colours: [[u8; 3]; LEVELS],
+    pub(super) weights: [u16; LEVELS],
+    pub(super) offsets: [i16; 2],
 }
 
 /// Looks and their colours, four bytes each so that a colour is one word.
@@ -43,6 +43,10 @@ pub(super) struct TextureLook {
 pub(super) struct Looks {
     looks: Vec<TextureLook>,
     palette: Vec<[u8; 4]>,
+    /// By sheet.
+    shades: Vec<Shades>,
+    /// By sheet: how it looks where all of the sun is hidden.
+    dark: Vec<TextureLook>,
     range: Extremes,
 }
 
@@ -111,9 +115,10 @@ impl Looks {
             pattern,
             weight,
             weights: [0; 2],
-            choice: TextureChoice::Plain,
-            per_m: 0.0,
+            places: Pattern::default(),
             palette_start,
+            offsets: [0; 2],
+            sheet: None,
         });
         self.widen(colour);
     }
@@ -130,170 +135,75 @@ impl Looks {
         self.widen(colour);
     }
 
-    /// Adds the look of a material on a surface with the unit normal `normal`.
-    pub(super) fn push(&mut self, material: &Material, light: &Light, normal: &Vector3) {
-        let brightness = light.on(normal);
-        let lit = material.colour.map(|channel| (f64::from(channel) * brightness).round().clamp(0.0, 255.0));
-        let lighter = |by: f64| lit.map(|channel| (channel + by).round().clamp(0.0, 255.0) as u8);
-        self.push_plain(lighter(0.0));
-        let (choice, amplitude, scale_m) = match material.texture {
-            Texture::Plain => return,
-            Texture::Checker { amplitude, scale_m } => (TextureChoice::Checker, amplitude, scale_m),
-            Texture::Stripes { amplitude, scale_m } => (TextureChoice::Stripes, amplitude, scale_m),
-            Texture::Noise { amplitude, scale_m } => {
-                let amplitude = amplitude.round().clamp(0.0, 127.0);
-                (TextureChoice::Noise(amplitude as f32), amplitude, scale_m)
-            }
-        };
-        if let TextureChoice::Noise(amplitude) = choice {
-            let most = amplitude as i32;
-            (-most..=most).for_each(|by| self.push_colour(lighter(f64::from(by))));
+    /// Adds the look of a material on a surface that is so bright, by [`Light::on`].
+    pub(super) fn push(&mut self, material: &Material, brightness: f64) {
+        let lit = lit(material, brightness);
+        self.push_plain(lighter(lit, 0.0));
+        let Some((pattern, steps)) = Pattern::of(&material.texture) else { return };
+        let [first, last] = steps.ends;
+        if steps.two {
+            [first, last].into_iter().for_each(|by| self.push_colour(lighter(lit, by)));
         } else {
-            [amplitude, -amplitude].into_iter().for_each(|by| self.push_colour(lighter(by)));
+            (first as i32..=last as i32).for_each(|by| self.push_colour(lighter(lit, f64::from(by))));
         }
         if let Some(look) = self.looks.last_mut() {
-            (look.choice, look.per_m) = (choice, (1.0 / scale_m) as f32);
+            look.places = pattern;
             let of = |index: usize| {
                 self.palette.get(look.palette_start + index).map_or(0, |[r, g, b, _]| weight([*r, *g, *b]))
             };
             look.weights = [of(0), of(1).wrapping_sub(of(0))];
+            look.offsets = [whole(first), if steps.two { whole(last) - whole(first) } else { 1 }];
         }
+    }
+
+    /// Lets shadows fall on the last look, a material on a surface with the unit normal `normal`; its sheet is the next one.
+    pub(super) fn shade(&mut self, material: &Material, light: &Light, normal: &Vector3) {
+        let share = |level: usize| 1.0 - level as f64 / (LEVELS - 1) as f64;
+        let colour = |level| lighter(lit(material, light.partly_on(normal, share(level))), 0.0);
+        let colours: [[u8; 3]; LEVELS] = std::array::from_fn(colour);
+        let Some(look) = self.looks.last_mut() else { return };
+        let offsets = look.offsets;
+        let last = self.palette.len().saturating_sub(look.palette_start + 1) as i16;
+        look.sheet = Some(self.shades.len() as u32);
+        self.push(material, light.partly_on(normal, 0.0));
+        self.dark.extend(self.looks.pop());
+        self.shades.push(Shades { colours, weights: colours.map(weight), offsets });
+        for by in [offsets[0], offsets[0] + offsets[1] * last] {
+            colours.into_iter().for_each(|colour| self.widen(lighter(colour.map(f64::from), f64::from(by))));
+        }
+    }
+
+    /// The look of a sheet where all of the sun is hidden.
+    #[inline(always)]
+    pub(super) fn dark(&self, sheet: u32) -> &TextureLook {
+        &self.dark[sheet as usize]
+    }
+
+    /// The shades of a sheet.
+    pub(super) fn shades(&self, sheet: u32) -> &Shades {
+        &self.shades[sheet as usize]
     }
 }
 
-/// Adding 1.5 * 2^23 rounds a small number to a whole one, which then stands in the low bits.
-const TO_WHOLE: f32 = 12_582_912.0;
+/// A material's colour at a brightness.
+fn lit(material: &Material, brightness: f64) -> [f64; 3] {
+    material.colour.map(|channel| (f64::from(channel) * brightness).round().clamp(0.0, 255.0))
+}
 
-/// The whole number below `value`, as bits and as a number. Only its low bits mean something far from the origin.
-#[inline(always)]
-fn floor(value: f32) -> (u32, f32) {
-    let shifted = (value - 0.5) + TO_WHOLE;
-    (shifted.to_bits(), shifted - TO_WHOLE)
+/// A colour so many grey levels lighter.
+fn lighter(colour: [f64; 3], by: f64) -> [u8; 3] {
+    colour.map(|channel| (channel + by).round().clamp(0.0, 255.0) as u8)
+}
+
+/// Whole grey levels, rounded as on a channel in the middle.
+fn whole(by: f64) -> i16 {
+    ((128.0 + by).round() - 128.0) as i16
 }
 
 impl TextureLook {
     /// Whether one colour is all there is.
     #[inline(always)]
     pub(super) fn is_plain(&self) -> bool {
-        self.choice == TextureChoice::Plain
-    }
-
-    /// The colour of each place: its index in this look's palette. Places in metres along the surface's two axes.
-    #[inline(always)]
-    pub(super) fn choose(&self, along: &[f32; BATCH], across: &[f32; BATCH], indices: &mut [u8; BATCH]) {
-        match self.choice {
-            TextureChoice::Plain => *indices = [0; BATCH],
-            TextureChoice::Checker => {
-                for ((index, along), across) in indices.iter_mut().zip(along).zip(across) {
-                    *index = ((floor(along * self.per_m).0 ^ floor(across * self.per_m).0) & 1) as u8;
-                }
-            }
-            TextureChoice::Stripes => {
-                for (index, across) in indices.iter_mut().zip(across) {
-                    *index = (floor(across * self.per_m).0 & 1) as u8;
-                }
-            }
-            TextureChoice::Noise(amplitude) => self.noise(amplitude, along, across, indices),
-        }
-    }
-
-    /// Value noise: the lattice's values, blended smoothly.
-    #[inline(always)]
-    fn noise(&self, amplitude: f32, along: &[f32; BATCH], across: &[f32; BATCH], indices: &mut [u8; BATCH]) {
-        let lattice = lattice();
-        let mut cells = [0_u32; BATCH];
-        let mut shares = [[0.0_f32; BATCH]; 2];
-        for place in 0..BATCH {
-            let (x, y) = (along[place] * self.per_m, across[place] * self.per_m);
-            let ((column, left), (row, low)) = (floor(x), floor(y));
-            cells[place] = (row % LATTICE as u32) * LATTICE as u32 + column % LATTICE as u32;
-            shares[0][place] = smooth(x - left);
-            shares[1][place] = smooth(y - low);
-        }
-        let mut corners = [0_u32; BATCH];
-        for (corners, cell) in corners.iter_mut().zip(cells) {
-            *corners = lattice[cell as usize % (LATTICE * LATTICE)];
-        }
-        for place in 0..BATCH {
-            let (right, up) = (shares[0][place], shares[1][place]);
-            let corner = |shift: u32| ((corners[place] << shift) as i32 >> 24) as f32;
-            let low = corner(24) + (corner(16) - corner(24)) * right;
-            let high = corner(8) + (corner(0) - corner(8)) * right;
-            let value = (low + (high - low) * up) * (1.0 / 127.0);
-            // The horizon may leave no number here; the clamp turns that into the darkest colour.
-            let index = (amplitude + amplitude * value).max(0.0).min(2.0 * amplitude);
-            indices[place] = (index + TO_WHOLE).to_bits() as u8;
-        }
-    }
-}
-
-/// 3 t^2 - 2 t^3: level at both ends.
-#[inline(always)]
-fn smooth(share: f32) -> f32 {
-    share * share * (3.0 - 2.0 * share)
-}
-
-/// For each cell of the lattice the values at its four corners, -127 to 127, one in each byte from the lowest up: low
-/// left, low right, high left, high right.
-fn lattice() -> &'static [u32; LATTICE * LATTICE] {
-    static CELLS: LazyLock<Box<[u32; LATTICE * LATTICE]>> = LazyLock::new(|| {
-        let mut cells = Box::new([0; LATTICE * LATTICE]);
-        for (index, cell) in cells.iter_mut().enumerate() {
-            let (column, row) = (index % LATTICE, index / LATTICE);
-            let corners = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(right, up)| lattice_value(column + right, row + up));
-            *cell = u32::from_le_bytes(corners.map(|value| value as u8));
-        }
-        cells
-    });
-    &CELLS
-}
-
-/// The value of a lattice point: evenly spread over -127 to 127.
-fn lattice_value(column: usize, row: usize) -> i8 {
-    let mut hash = ((row % LATTICE) * LATTICE + column % LATTICE) as u32;
-    hash = (hash ^ 0x5bd1_e995).wrapping_mul(0x85eb_ca6b);
-    hash = (hash ^ (hash >> 13)).wrapping_mul(0xc2b2_ae35);
-    (((hash ^ (hash >> 16)) % 255) as i32 - 127) as i8
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn indices(texture: Texture, places: &[(f32, f32)]) -> Vec<u8> {
-        let material = Material { name: String::new(), colour: [100; 3], texture, laser: true };
-        let light = Light { towards: Vector3::z(), ambient: 1.0, gain: 1.0 };
-        let mut looks = Looks::default();
-        looks.push(&material, &light, &Vector3::z());
-        let (mut along, mut across, mut indices) = ([0.0; BATCH], [0.0; BATCH], [0; BATCH]);
-        for (place, &(x, y)) in places.iter().enumerate() {
-            (along[place], across[place]) = (x, y);
-        }
-        looks.get(0).choose(&along, &across, &mut indices);
-        indices[..places.len()].to_vec()
-    }
-
-    #[test]
-    fn a_checker_alternates_along_both_axes_and_repeats_after_two_squares() {
-        let texture = Texture::Checker { amplitude: 20.0, scale_m: 0.5 };
-        let places = [(0.2, 0.2), (0.7, 0.2), (0.7, 0.7), (1.2, 0.2), (-0.2, 0.2), (-0.2, -0.2), (10.2, 20.2)];
-        assert_eq!(indices(texture, &places), [0, 1, 0, 0, 1, 0, 0]);
-    }
-
-    #[test]
-    fn stripes_run_across_the_second_axis_alone() {
-        let texture = Texture::Stripes { amplitude: 20.0, scale_m: 0.1 };
-        assert_eq!(indices(texture, &[(0.0, 0.05), (7.3, 0.05), (0.0, 0.15), (0.0, -0.05)]), [0, 0, 1, 1]);
-    }
-
-    #[test]
-    fn noise_is_the_lattice_value_at_a_lattice_point_and_repeats_after_the_lattice() {
-        let texture = Texture::Noise { amplitude: 127.0, scale_m: 1.0 };
-        let found = indices(texture, &[(3.0, 5.0), (3.0 + LATTICE as f32, 5.0), (3.5, 5.0), (f32::NAN, 0.0)]);
-        let here = i32::from(lattice_value(3, 5));
-        let right = i32::from(lattice_value(4, 5));
-        assert_eq!(i32::from(found[0]), 127 + here);
-        assert_eq!(found[1], found[0]);
-        assert!((i32::from(found[2]) - 127 - (here + right) / 2).abs() <= 1);
+        self.places.is_plain() && self.sheet.is_none()
     }
 }

@@ -60,6 +60,7 @@ impl BodyReader<'_> {
         limits.greatest_m_per_s = own.number("greatest_m_per_s").unwrap_or(limits.greatest_m_per_s);
         limits.greatest_rad_per_s = own.number("greatest_rad_per_s").unwrap_or(limits.greatest_rad_per_s);
         settings.robot.lag_s = own.number("lag_s").unwrap_or(settings.robot.lag_s);
+        settings.camera.deck_m = own.number("height_m").unwrap_or(settings.camera.deck_m);
         for group in ["camera", "laser"] {
             if let Some((table, _)) = inner(group) {
                 self.group(group, table, settings);

@@ -2,8 +2,8 @@
 
 use super::{
     BodyShape, CameraSettings, CombineSettings, CombineWay, DriveLimits, GroundSettings, LaserSettings, LearnerKind,
-    LearnerSettings, Lens, MoverSettings, RecoverTo, RecoverySettings, RobotSettings, RunSettings, Settings,
-    StartSettings, UNNAMED_VIEW, ViewSettings,
+    LearnerSettings, Lens, LightSettings, MoverSettings, RecoverTo, RecoverySettings, RobotSettings, RunSettings,
+    Settings, StartSettings, UNNAMED_VIEW, ViewSettings,
 };
 use crate::geometry::Twist;
 
@@ -76,10 +76,21 @@ fn camera() -> CameraSettings {
         height_m: 0.81,
         tilt_deg: 42.0,
         noise: 2.0,
+        exposure_drift: 0.0,
+        white_balance_drift: 0.0,
         own_body: false,
         depth: false,
         depth_noise: 0.005,
         depth_holes: 0.0,
+        deck_m: 0.25,
+        light: LightSettings {
+            gain: 1.0,
+            ambient: 0.0,
+            turn_deg: 0.0,
+            raise_deg: 0.0,
+            shadows: false,
+            softness_deg: 0.0,
+        },
     }
 }
 

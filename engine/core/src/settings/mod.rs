@@ -116,10 +116,27 @@ pub struct CameraSettings {
     pub height_m: f64,
     pub tilt_deg: f64,
     pub noise: f64,
+    pub exposure_drift: f64,
+    pub white_balance_drift: f64,
     pub own_body: bool,
     pub depth: bool,
     pub depth_noise: f64,
     pub depth_holes: f64,
+    pub deck_m: f64,
+    /// What becomes of the light that a world file says.
+    pub light: LightSettings,
+}
+
+/// What becomes of the light that a world file says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs, reason = "every field is documented in the table of settings")]
+pub struct LightSettings {
+    pub gain: f64,
+    pub ambient: f64,
+    pub turn_deg: f64,
+    pub raise_deg: f64,
+    pub shadows: bool,
+    pub softness_deg: f64,
 }
 
 /// The laser and its mount.

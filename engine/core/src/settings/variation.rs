@@ -4,7 +4,7 @@ use super::{SETTINGS, Setting, SettingShape, Value};
 use crate::random::Random;
 
 /// Settings that may be drawn anew: those that change neither the form of what is sensed nor the rhythm of a run.
-const VARIABLE: [&str; 18] = [
+const VARIABLE: [&str; 26] = [
     "robot.lag_s",
     "robot.speed_noise",
     "robot.slip",
@@ -13,6 +13,14 @@ const VARIABLE: [&str; 18] = [
     "camera.height_m",
     "camera.tilt_deg",
     "camera.noise",
+    "camera.exposure_drift",
+    "camera.white_balance_drift",
+    "light.gain",
+    "light.ambient",
+    "light.turn_deg",
+    "light.raise_deg",
+    "light.shadows",
+    "light.softness_deg",
     "laser.forward_m",
     "laser.height_m",
     "laser.tilt_deg",
@@ -170,7 +178,7 @@ mod tests {
         for key in VariedKey::all() {
             assert!(VariedKey::of(key).is_some(), "{key}");
         }
-        for key in ["robot.tick_s", "camera.width_px", "laser.beams", "run.period_s", "grid.rows", "light.gain"] {
+        for key in ["robot.tick_s", "camera.width_px", "laser.beams", "run.period_s", "grid.rows", "camera.own_body"] {
             assert!(VariedKey::of(key).is_none(), "{key}");
         }
         assert!(VariedKey::of("colour.").is_none() && VariedKey::of("mover..speed").is_none());

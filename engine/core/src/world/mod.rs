@@ -9,6 +9,7 @@ mod drivetrain;
 mod families;
 mod floor_squares;
 mod layout;
+mod light;
 pub(crate) mod marks;
 mod movements;
 mod mover;
@@ -199,13 +200,13 @@ impl World {
         self.traffic.seen_by(index)
     }
 
-    /// The body with this index as others see it: upright, whatever slope it stands on.
+    /// The body with this index up to a height: upright, whatever slope it stands on.
     ///
     /// # Panics
     /// If there is no such body.
     #[must_use]
-    pub(crate) fn solid_of(&self, index: usize) -> Solid {
-        self.vehicles[index].solid(self.material)
+    pub(crate) fn solid_of(&self, index: usize, height_m: f64) -> Solid {
+        self.vehicles[index].solid_up_to(height_m, self.material)
     }
 
     /// Where a mover is now.

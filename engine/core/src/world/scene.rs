@@ -8,7 +8,8 @@ use parry3d::bounding_volume::Aabb;
 use parry3d::math::Vector;
 use parry3d::partitioning::{Bvh, BvhBuildStrategy, TraversalAction};
 
-use crate::geometry::{Point3, Vector3};
+pub use super::light::Light;
+use crate::geometry::{Point2, Point3, Vector3};
 
 /// The form of a solid in its own axes, its centre at the origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -86,25 +87,23 @@ pub enum Texture {
         /// Distance of the lattice points, metres.
         scale_m: f64,
     },
+    /// Square tiles, row by row.
+    Tiles(Tiling),
+    /// Bricks half as high as long, every second row shifted by half a brick.
+    Bricks(Tiling),
 }
 
-/// One sun and the light that comes from everywhere.
+/// Tiles or bricks, and the joints between them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Light {
-    /// Unit vector from the scene towards the light.
-    pub towards: Vector3,
-    /// Share of the light that comes from everywhere, 0 to 1.
-    pub ambient: f64,
-    /// Brightness of the whole picture; 1 is normal.
-    pub gain: f64,
-}
-
-impl Light {
-    /// Brightness of a surface with the unit normal `normal`: gain * (ambient + (1 - ambient) * max(0, cos)).
-    #[must_use]
-    pub fn on(&self, normal: &Vector3) -> f64 {
-        self.gain * (self.ambient + (1.0 - self.ambient) * self.towards.dot(normal).max(0.0))
-    }
+pub struct Tiling {
+    /// Most that a tile is lighter or darker than the colour, grey levels, 0 to 127.
+    pub amplitude: f64,
+    /// Length of a tile from joint to joint, metres.
+    pub scale_m: f64,
+    /// Width of a joint, metres.
+    pub joint_m: f64,
+    /// How much darker than the colour a joint is, grey levels, 0 to 127.
+    pub joint: f64,
 }
 
 /// All that stands still in a world.
@@ -152,6 +151,8 @@ impl Solid {
 pub struct Scene {
     parts: SceneParts,
     hierarchy: Bvh,
+    /// Where on the floor plan movers drive: least and greatest coordinates, metres.
+    driven: Option<[Point2; 2]>,
 }
 
 impl Scene {
@@ -159,7 +160,22 @@ impl Scene {
     #[must_use]
     pub fn new(parts: SceneParts) -> Self {
         let leaves: Vec<Aabb> = parts.solids.iter().map(|solid| loose_box(solid.bounds())).collect();
-        Self { hierarchy: Bvh::from_leaves(BvhBuildStrategy::Binned, &leaves), parts }
+        Self { hierarchy: Bvh::from_leaves(BvhBuildStrategy::Binned, &leaves), parts, driven: None }
+    }
+
+    /// This scene with things that drive over these places of the floor plan, for their shadows.
+    #[must_use]
+    pub(crate) fn driven_over<'a>(mut self, places: impl Iterator<Item = &'a Point2>) -> Self {
+        for place in places {
+            let [low, high] = self.driven.unwrap_or([*place; 2]);
+            self.driven = Some([low.inf(place), high.sup(place)]);
+        }
+        self
+    }
+
+    /// Where movers drive: least and greatest coordinates on the floor plan, metres.
+    pub(crate) fn driven(&self) -> Option<[Point2; 2]> {
+        self.driven
     }
 
     /// This scene with some of its materials so many grey levels lighter; negative ones are darker.
@@ -221,7 +237,7 @@ mod tests {
                 collides: true,
             })
             .collect();
-        let light = Light { towards: Vector3::z(), ambient: 0.5, gain: 1.0 };
+        let light = Light::from_direction(Vector3::z(), 0.5, 1.0);
         Scene::new(SceneParts { solids, materials: Vec::new(), floor: 0, light })
     }
 

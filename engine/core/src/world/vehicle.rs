@@ -103,7 +103,12 @@ impl Vehicle {
 
     /// The body as others meet and see it: upright, whatever slope it stands on.
     pub(super) fn solid(&self, material: usize) -> Solid {
-        let (ahead_m, half_z) = (self.shape.footprint.ahead_m(), 0.5 * self.shape.height_m);
+        self.solid_up_to(self.shape.height_m, material)
+    }
+
+    /// The body up to a height.
+    pub(super) fn solid_up_to(&self, height_m: f64, material: usize) -> Solid {
+        let (ahead_m, half_z) = (self.shape.footprint.ahead_m(), 0.5 * height_m);
         let [half_x, half_y] = self.shape.footprint.half_m();
         let shape = match self.shape.footprint {
             Footprint::Rectangle { .. } => Shape::Box { half_m: Vector3::new(half_x, half_y, half_z) },

@@ -90,6 +90,9 @@ fn idle(plan: &Plan, name: &str) -> Option<(String, &'static str)> {
             format!("recovery is to \"{}\"", settings.recovery.to.word()),
             "write recovery(\"behind\", ...), or take it out",
         ),
+        ("light", "softness_deg") if !has_shadows(plan) => {
+            ("nothing throws a shadow".to_owned(), "set light.shadows = true, or take it out")
+        }
         ("run", "stay_steps") if !plan.varies() => {
             ("there is one world, and nothing is drawn".to_owned(), "take it out, or add worlds or randomise")
         }
@@ -115,6 +118,13 @@ fn idle(plan: &Plan, name: &str) -> Option<(String, &'static str)> {
         _ => return None,
     };
     Some(why)
+}
+
+/// Whether the sun throws shadows in one of the worlds.
+fn has_shadows(plan: &Plan) -> bool {
+    let drawn = plan.settings.randomise.iter().any(|varied| varied.key == "light.shadows");
+    let in_file = |layout: &std::sync::Arc<engine::world::Layout>| layout.scene.parts().light.shadows;
+    plan.settings.camera.light.shadows || drawn || plan.worlds.layouts().iter().any(in_file)
 }
 
 fn same_actions(plan: &Plan, findings: &mut Vec<Finding>) {

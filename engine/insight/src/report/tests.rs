@@ -30,7 +30,7 @@ fn wall(from: [f64; 2], to: [f64; 2]) -> Solid {
 
 fn world(solids: Vec<Solid>) -> SceneParts {
     let material = Material { name: "wall".into(), colour: [200, 40, 30], texture: Texture::Plain, laser: true };
-    let light = Light { towards: Vector3::z(), ambient: 0.5, gain: 1.0 };
+    let light = Light::from_direction(Vector3::z(), 0.5, 1.0);
     SceneParts { solids, materials: vec![material], floor: 0, light }
 }
 

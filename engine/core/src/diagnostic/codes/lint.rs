@@ -52,8 +52,8 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
     (
         "W-MOUNT",
         Kind::Input,
-        "The camera stands inside the body and looks out through its walls, or a sensor stands so far outside of the body that \
-         it passes through walls before the body touches them.\n\
+        "The camera or the laser stands inside the body and looks out through its walls, or stands so far outside of it that it \
+         passes through walls before the body touches them, or the camera looks at the body and the image does not show it.\n\
          No such robot can be built. Mounts are measured from the point that the robot turns about; robots/README.md has outlines.",
     ),
     (

@@ -85,6 +85,12 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
         "Something in the world file is called by a name that nothing has, or that two things have.",
     ),
     (
+        "E-WORLD-SHADOWS",
+        Kind::Input,
+        "Shadows are computed for every lit face of a world, and this world has too many solids for that.\n\
+         Join solids, take some out, or leave light.shadows off.",
+    ),
+    (
         "E-WORLD-START",
         Kind::Input,
         "The world has no place for the robot to start, or the robot would touch something or fall there.\n\

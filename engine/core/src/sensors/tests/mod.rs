@@ -6,3 +6,4 @@ mod depth;
 mod laser;
 mod oracle;
 mod repeat;
+mod shadows;

@@ -67,7 +67,7 @@ pub(super) fn scene(solids: Vec<Solid>, materials: usize) -> Scene {
         texture: Texture::Plain,
         laser: true,
     };
-    let light = Light { towards: Vector3::new(0.48, 0.36, 0.8), ambient: 0.5, gain: 0.9 };
+    let light = Light::from_direction(Vector3::new(0.48, 0.36, 0.8), 0.5, 0.9);
     Scene::new(SceneParts { solids, materials: (0..materials).map(material).collect(), floor: 0, light })
 }
 

@@ -46,7 +46,9 @@ pub(super) fn build(source: SourceText) -> Result<Built> {
     builder.has_start(&file);
     let Builder { materials, solids, carries, origins, .. } = builder;
     mistakes.end()?;
-    let scene = Scene::new(SceneParts { solids, materials, floor, light });
+    let ways = movers.iter().filter_map(|mover| routes.get(mover.route));
+    let scene =
+        Scene::new(SceneParts { solids, materials, floor, light }).driven_over(ways.flat_map(|way| way.points()));
     let terrain = Terrain::new(&scene, carries);
     let lap = routes.iter().position(|route| route.name == "lap");
     let name = source.path.file_stem().map_or_else(|| "world".to_owned(), |stem| stem.to_string_lossy().into_owned());
@@ -105,7 +107,7 @@ impl<'a> Builder<'a> {
                 continue;
             }
             let colour = row.numbers("colour");
-            let texture = row.rows("texture").first().map_or(Texture::Plain, texture);
+            let texture = row.rows("texture").first().map_or(Texture::Plain, |row| self.texture(row));
             self.materials.push(Material {
                 name,
                 colour: [0, 1, 2].map(|channel| colour[channel].round() as u8),
@@ -179,7 +181,13 @@ impl<'a> Builder<'a> {
             }
         }
         let number = |key, default| row.and_then(|row| row.number(key)).unwrap_or(default);
-        Light { towards: towards.normalize(), ambient: number("ambient", 0.4), gain: number("gain", 1.0) }
+        Light {
+            towards: towards.normalize(),
+            ambient: number("ambient", 0.4),
+            gain: number("gain", 1.0),
+            shadows: row.and_then(|row| row.flag("shadows")).unwrap_or(false),
+            softness_deg: number("softness_deg", 0.0),
+        }
     }
 
     fn solids(&mut self, file: &FileRow) {
@@ -333,15 +341,5 @@ impl<'a> Builder<'a> {
             .at(self.source, end..end, "the file ends here")
             .help("add a table [[start]] with 'position_m = [x, y]' and 'yaw_deg = 0'");
         self.mistakes.add(wrong);
-    }
-}
-
-fn texture(row: &FileRow) -> Texture {
-    let (amplitude, scale_m) = (row.number("amplitude").unwrap_or(10.0), row.number("scale_m").unwrap_or(0.2));
-    match row.text("kind") {
-        Some("checker") => Texture::Checker { amplitude, scale_m },
-        Some("stripes") => Texture::Stripes { amplitude, scale_m },
-        Some("noise") => Texture::Noise { amplitude, scale_m },
-        _ => Texture::Plain,
     }
 }

@@ -8,6 +8,7 @@ pub(crate) mod schema;
 mod starts;
 #[cfg(test)]
 mod tests;
+mod textures;
 
 use super::marks::{Circle, Gate, Start};
 use super::mover::Mover;

@@ -1,5 +1,7 @@
 //! The keys of a world file: every name, what it may hold, and whether it must be there.
 
+use crate::world::light::WIDEST_SUN_DEG;
+
 /// What a key may hold.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum KeyForm {
@@ -62,11 +64,15 @@ const LIGHT: &[FileKey] = &[
     may("towards", "", KeyForm::Numbers(3, -1.0, 1.0)),
     may("ambient", "share", KeyForm::Number(0.0, 1.0)),
     may("gain", "times", KeyForm::Number(0.05, 5.0)),
+    may("shadows", "", KeyForm::Flag),
+    may("softness_deg", "degrees", KeyForm::Number(0.0, WIDEST_SUN_DEG)),
 ];
 const TEXTURE: &[FileKey] = &[
-    must("kind", "", KeyForm::Choice(&["plain", "checker", "stripes", "noise"])),
+    must("kind", "", KeyForm::Choice(&["plain", "checker", "stripes", "noise", "tiles", "bricks"])),
     may("amplitude", "grey levels", KeyForm::Number(0.0, 127.0)),
     may("scale_m", "metres", LENGTH),
+    may("joint_m", "metres", LENGTH),
+    may("joint", "grey levels", KeyForm::Number(0.0, 127.0)),
 ];
 const MATERIALS: &[FileKey] = &[
     must("name", "", KeyForm::Text),
