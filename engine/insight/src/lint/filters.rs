@@ -80,11 +80,13 @@ fn alike(
     if !plain(parts.floor) {
         return;
     }
-    let floor = seen(parts, parts.floor, &Vector3::z());
+    let light = parts.light.changed(&plan.settings.camera.light);
+    let seen = |material: usize, normal: &Vector3| seen(parts, light.on(normal), material);
+    let floor = seen(parts.floor, &Vector3::z());
     let solids = parts.solids.iter().filter(|solid| solid.collides && plain(solid.material));
     let found = solids
         .flat_map(|solid| sides(solid).map(move |side| (solid.material, side)))
-        .find_map(|(material, side)| Some((material, words(seen(parts, material, &side), floor)?)));
+        .find_map(|(material, side)| Some((material, words(seen(material, &side), floor)?)));
     if let Some((material, words)) = found {
         let name = &parts.materials[material].name;
         let message = format!("a face of '{name}' has the {what} of the floor: {words}");
@@ -118,9 +120,8 @@ fn of_one_colour(filter: &FilterSettings) -> impl Fn([f64; 3], [f64; 3]) -> Opti
     }
 }
 
-/// The colour that a face of a material has in the world's light.
-fn seen(parts: &SceneParts, material: usize, normal: &Vector3) -> [f64; 3] {
-    let light = parts.light.on(normal);
+/// The colour that a face of a material has under light of a brightness.
+fn seen(parts: &SceneParts, light: f64, material: usize) -> [f64; 3] {
     parts.materials[material].colour.map(|level| (f64::from(level) * light).round().clamp(0.0, 255.0))
 }
 
