@@ -185,7 +185,7 @@ impl Plan {
         plan.find_out_of_reach(unread, &mut mistakes);
         plan.find_unnamed(&mut mistakes);
         plan.find_unvaried(&mut mistakes);
-        let robot = ["camera", "laser", "movers", "recovery", "robot", "run"];
+        let robot = ["camera", "laser", "light", "movers", "recovery", "robot", "run"];
         if !robot.iter().any(|call| unread.any_of(call)) && mistakes.take(plan.try_worlds()).is_some() && sees {
             let alone = (0..plan.worlds.layouts().len()).map(|world| plan.in_world(world));
             mistakes.take(alone.into_iter().try_for_each(|plan| outlook::check_outlook(&plan)));
