@@ -188,7 +188,7 @@ impl Plan {
         plan.find_out_of_reach(unread, &mut mistakes);
         plan.find_unnamed(&mut mistakes);
         plan.find_unvaried(&mut mistakes);
-        let robot = ["camera", "laser", "movers", "recovery", "robot", "run"];
+        let robot = ["camera", "laser", "light", "movers", "recovery", "robot", "run"];
         if !robot.iter().any(|call| unread.any_of(call)) && plan.try_worlds(&mut mistakes) && sees {
             for world in 0..plan.worlds.layouts().len() {
                 mistakes.take(outlook::check_outlook(&plan.in_world(world)));
