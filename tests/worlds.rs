@@ -193,7 +193,7 @@ fn a_wrong_list_of_worlds_or_a_wrong_draw_is_one_error_with_what_to_write() {
         "world(\"room\"); worlds([\"room\", \"hallway\"]);".to_owned(),
         "worlds(\"room\");".to_owned(),
         "randomise(#{});".to_owned(),
-        "randomise(#{ \"light.gain\": [0.6, 1.4] });".to_owned(),
+        "randomise(#{ \"run.period_s\": [0.3, 0.6] });".to_owned(),
         "randomise(#{ \"camera.tilt_dg\": [40, 44] });".to_owned(),
         "randomise(#{ \"camera.tilt_deg\": [44, 40] });".to_owned(),
         "randomise(#{ \"camera.tilt_deg\": 42 });".to_owned(),
