@@ -75,10 +75,9 @@ fn idle(plan: &Plan, name: &str) -> Option<(String, &'static str)> {
     let (learner, combines) = (&settings.learner, !plan.learns());
     let reads_laser = outline.groups.iter().any(|group| group == "laser");
     let (group, key) = name.split_once('.')?;
-    if group == "learner"
-        && let Some(why) = of_another_learner(learner.kind, key)
-    {
-        return Some(why);
+    let of_another = if group == "learner" { of_another_learner(learner.kind, key) } else { None };
+    if of_another.is_some() {
+        return of_another;
     }
     let kind = |kinds: &[LearnerKind]| kinds.contains(&learner.kind);
     let why = match (group, key) {
