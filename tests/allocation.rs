@@ -120,7 +120,7 @@ fn more_steps_with_a_used_policy_allocate_nothing_more() {
     let text = std::fs::read_to_string(&path).unwrap();
     let plan = |text: &str| {
         let behaviour = Behaviour::parse("wall", SourceText::new(path.clone(), text)).unwrap();
-        Plan::new(Arc::new(behaviour), &Overrides { steps: Some(400), ..Overrides::default() }).unwrap()
+        Plan::new(Arc::new(behaviour), &Overrides { steps: Some(400), ..by_table() }).unwrap()
     };
     let source = SourceText::new("policy.toml", "");
     let own = plan(&text);
@@ -138,7 +138,7 @@ fn going_from_world_to_world_allocates_nothing() {
     let text = std::fs::read_to_string(&path).unwrap();
     let text = text.replace("world(\"room\");", worlds).replace("run(#{ period_s: 0.5 });\n", "\n");
     let behaviour = Behaviour::parse("wall", SourceText::new(path, text)).unwrap();
-    let plan = Plan::new(Arc::new(behaviour), &Overrides::default()).unwrap();
+    let plan = Plan::new(Arc::new(behaviour), &by_table()).unwrap();
     assert_eq!(plan.worlds.layouts().len(), 3);
     assert_eq!(allocations(&plan, 5_000), allocations(&plan, 1_000));
 }

@@ -257,8 +257,8 @@ fn a_misspelt_command_and_a_misspelt_flag() {
 fn a_setting_that_is_not_there() {
     assert_snapshot!(Bench::new().failure(&["run", "short.rhai", "--set", "camera.tlit_deg=40"]));
     assert_snapshot!(Bench::new().failure(&["run", "short.rhai", "--set", "tilt_deg=40"]));
-    let shown = Bench::new().failure(&["run", "short.rhai", "--set", "light.gain=0.5"]);
-    assert!(shown.contains("the groups are: run, robot, camera, laser, ground, grid, learner"), "{shown}");
+    let shown = Bench::new().failure(&["run", "short.rhai", "--set", "weather.gain=0.5"]);
+    assert!(shown.contains("the groups are: run, robot, camera, light, laser, ground, grid, learner"), "{shown}");
 }
 
 #[test]

@@ -48,7 +48,7 @@ fn the_rules_of_a_step_add_up_to_its_reward() {
             assert_eq!(values.iter().sum::<f64>(), record.reward, "{script}, step {step}");
             fired += values.len();
         }
-        assert!(fired > 5, "{script}");
+        assert!(fired >= 3, "{script}");
     }
 }
 

@@ -39,7 +39,7 @@ fn what_is_no_name_of_a_world_is_told_as_that() {
 #[test]
 fn every_policy_that_is_not_there_is_told() {
     let policies = "policy(\"a\", \"runs/none/1\");\npolicy(\"b\", \"runs/nope/1\");\n";
-    for uses in ["", "use \"a\" when laser.front < 1.0;\n"] {
+    for uses in ["", "use \"a\" when laser.front < 1.0;\nuse \"b\" when laser.front > 2.0;\n"] {
         let bench = Bench::new();
         bench.write("mine.rhai", format!("{policies}{uses}{SCRIPT}"));
         let told = bench.failure(&["run", "mine.rhai"]);

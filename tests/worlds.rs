@@ -159,11 +159,11 @@ fn a_world_that_lacks_what_the_script_names_is_told_at_its_place() {
     );
     assert_eq!(
         help(&format!("worlds([\"one\", \"smal\"]);\n{rules};")),
-        "E-WORLD-FILE: there is no world 'smal' [worlds] did you mean \"small\"?"
+        "E-WORLD-FILE: there is no world 'smal' [\"smal\"] did you mean \"small\"?"
     );
     assert_eq!(
         help(&format!("worlds([\"one\", \"corridor:3\"]);\n{rules};")),
-        "E-WORLD-FILE: there is no family of worlds 'corridor' [worlds] did you mean \"corridors:3\"?"
+        "E-WORLD-FILE: there is no family of worlds 'corridor' [\"corridor:3\"] did you mean \"corridors:3\"?"
     );
     assert_eq!(
         help(&format!("world(\"one\"); randomise(#{{ \"colour.wal\": [0, 9] }});\n{rules};")),
@@ -193,7 +193,7 @@ fn a_wrong_list_of_worlds_or_a_wrong_draw_is_one_error_with_what_to_write() {
         "world(\"room\"); worlds([\"room\", \"hallway\"]);".to_owned(),
         "worlds(\"room\");".to_owned(),
         "randomise(#{});".to_owned(),
-        "randomise(#{ \"light.gain\": [0.6, 1.4] });".to_owned(),
+        "randomise(#{ \"run.period_s\": [0.3, 0.6] });".to_owned(),
         "randomise(#{ \"camera.tilt_dg\": [40, 44] });".to_owned(),
         "randomise(#{ \"camera.tilt_deg\": [44, 40] });".to_owned(),
         "randomise(#{ \"camera.tilt_deg\": 42 });".to_owned(),

@@ -17,7 +17,9 @@ use engine::script::Behaviour;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().collect();
-    let [_, script, seed, phase] = &arguments[..] else { return Err("write: outside SCRIPT SEED learning|test".into()) };
+    let [_, script, seed, phase] = &arguments[..] else {
+        return Err("write: outside SCRIPT SEED learning|test".into());
+    };
     let phase = if phase == "test" { Phase::Test } else { Phase::Learning };
     let plan = Plan::new(Arc::new(Behaviour::load(Path::new(script))?), &Overrides::default())?;
     let mut cycle = Cycle::new(&plan, phase.robot(&plan, seed.parse()?)?)?;

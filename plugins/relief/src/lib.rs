@@ -191,15 +191,15 @@ mod tests {
 
     #[test]
     fn ground_out_of_reach_and_the_sky_are_never_marked() {
-        // Eight rows: ground at 0.6 + 0.2 * (row - 3.5) = -0.1, 0.1, 0.3 ... 1/m. Up to 2 m is 0.5 1/m and more.
-        let mask = mask(&[0.06, 2.0, 0.0], 1, &[65_535; 8]);
+        // Eight rows: ground at 0.6 + 0.2 * (row - 3.5) = -0.1, 0.1, 0.3 ... 1/m. Up to 2.5 m is 0.4 1/m and more.
+        let mask = mask(&[0.06, 2.5, 0.0], 1, &[65_535; 8]);
         assert_eq!(mask, [0, 0, 0, 255, 255, 255, 255, 255]);
     }
 
     #[test]
     fn a_pixel_without_a_reading_is_marked_only_if_asked_for() {
-        assert_eq!(mask(&[0.06, 2.0, 0.0], 1, &[0; 8]), [0; 8]);
-        assert_eq!(mask(&[0.06, 2.0, 1.0], 1, &[0; 8]), [0, 0, 0, 255, 255, 255, 255, 255]);
+        assert_eq!(mask(&[0.06, 2.5, 0.0], 1, &[0; 8]), [0; 8]);
+        assert_eq!(mask(&[0.06, 2.5, 1.0], 1, &[0; 8]), [0, 0, 0, 255, 255, 255, 255, 255]);
     }
 
     #[test]

@@ -355,7 +355,8 @@ mod tests {
         assert_eq!(two_ways.help.as_deref(), Some("one chain makes one mask: leave out 'colour' or 'sobel'"));
         let first = error(&[stage("horizon", &[]), stage("sobel", &[])]);
         assert_eq!(first.message, "filter 'horizon' reads a mask, not colour");
-        let help = "put one before it that writes a mask: chroma, colour, floor, relief, scharr, sobel, threshold, where";
+        let help =
+            "put one before it that writes a mask: chroma, colour, floor, relief, scharr, sobel, threshold, where";
         assert_eq!(first.help.as_deref(), Some(help));
         let grey_at_the_end = error(&[stage("blur", &[])]);
         assert_eq!(grey_at_the_end.message, "the last filter writes grey, but the grid needs a mask");

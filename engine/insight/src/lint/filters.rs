@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use super::Finding;
 use engine::experiment::Plan;
-use engine::filter::mount_of;
 use engine::geometry::Vector3;
 use engine::settings::{FilterSettings, ViewSettings};
 use engine::world::scene::{SceneParts, Shape, Solid, Texture};
@@ -14,7 +13,6 @@ pub(super) fn check_filters(plan: &Plan, findings: &mut Vec<Finding>) {
         for (index, filter) in view.filters.iter().enumerate() {
             let Some(span) = plan.behaviour.place_of(&view.place(&format!("filter:{index}"))) else { continue };
             match filter.name.as_str() {
-                "relief" => without_ground(plan, filter, span, findings),
                 "chroma" => alike(plan, "colour", span, of_one_colour(filter), findings),
                 "floor" if value(filter, "memory", 0.0) != 0.0 => {
                     alike(plan, "grey", span, of_one_grey(filter), findings);
@@ -45,26 +43,6 @@ fn unread_depth(plan: &Plan, findings: &mut Vec<Finding>) {
         let help = "add a filter that does, such as filter(\"relief\"), or leave depth out";
         findings.push(Finding::warning(plan, "W-UNUSED", span, message).say("not used", help));
     }
-}
-
-/// `relief` with a camera that has no ground within its reach.
-fn without_ground(plan: &Plan, filter: &FilterSettings, span: Range<usize>, findings: &mut Vec<Finding>) {
-    let (camera, mount, reach_m) =
-        (&plan.settings.camera, mount_of(&plan.settings.camera), value(filter, "reach_m", 6.7));
-    let down = (0.5 * camera.height_px as f64 - 0.5) / mount.focal_px;
-    let nearest = (mount.tilt_sin + down * mount.tilt_cos) / mount.height_m;
-    if nearest * reach_m > 1.0 {
-        return;
-    }
-    let message = match nearest > 0.0 {
-        true => format!(
-            "the lowest row of the image looks at the ground {:.1} m ahead, beyond the reach of relief",
-            1.0 / nearest
-        ),
-        false => "the camera looks above the horizon only: relief has no ground to compare with".to_owned(),
-    };
-    let help = "tilt the camera down, or raise reach_m of the filter";
-    findings.push(Finding::warning(plan, "W-LOOK-ALIKE", span, message).say("marks nothing", help));
 }
 
 /// Something to run into whose face looks to the filter like the floor.

@@ -38,9 +38,9 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
     (
         "W-LOOK-ALIKE",
         Kind::Input,
-        "Something that the robot must see looks like the floor to the filter, or the filter has no floor to compare with.\n\
-         Told of `floor` with a memory where a face has a grey of the floor in the world's light, of `chroma` where it has its \
-         colour, and of `relief` where the camera shows no ground within its reach. Another light, colour or tilt helps.",
+        "Something that the robot must see looks like the floor to the filter.\n\
+         Told of `floor` with a memory where a face has a grey of the floor in the world's light, and of `chroma` where it has its \
+         colour. Another light or colour helps, or a depth camera with `relief`.",
     ),
     (
         "W-LOOP",
