@@ -4,7 +4,7 @@ use std::net::TcpStream;
 use serde_json::Value;
 
 use super::served::{Served, message};
-use crate::support::{SCRIPT, WORLD};
+use crate::support::SCRIPT;
 
 /// The run of a save, learned and tested.
 fn done(events: &mut BufReader<TcpStream>, save: u64) -> Value {

@@ -8,7 +8,7 @@ use crate::settings::{CameraSettings, Lens};
 
 /// How a camera is mounted, as filters are told.
 #[must_use]
-fn mount_of(camera: &CameraSettings) -> Mount {
+pub fn mount_of(camera: &CameraSettings) -> Mount {
     let view_rad = camera.field_of_view_deg.to_radians();
     let half_px = 0.5 * camera.width_px as f64;
     let fisheye = camera.lens == Lens::Fisheye;

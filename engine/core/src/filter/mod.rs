@@ -25,6 +25,7 @@ pub use chain::{Chain, ChainError};
 pub use condition::{EXAMPLE, LANGUAGE};
 pub use conformance::conformance;
 pub use entry::{Entry, Form};
+pub use kept::mount_of;
 pub use native::serve;
 pub use running::Running;
 pub use trust::Trust;
