@@ -1,7 +1,7 @@
 use std::sync::atomic::AtomicBool;
 
 use super::figures::Figure;
-use super::job::Metric;
+use super::job::{Learn, Metric};
 use super::row::Row;
 use super::*;
 
@@ -171,4 +171,12 @@ fn a_metric_says_which_seeds_are_good() {
     assert_eq!(super::row::shown(-1800.25, 1), "−1,800.2");
     assert_eq!(super::row::shown(-0.01, 1), "0.0");
     assert_eq!(super::row::shown(f64::INFINITY, 0), "never");
+}
+
+#[test]
+fn every_claim_is_learned_by_ttd_unless_it_names_another_learner() {
+    let changes = |set: &'static [&'static str]| Learn::script("wall").set(set).changes().collect::<Vec<_>>();
+    assert_eq!(changes(&[]), ["learner.kind=ttd"]);
+    assert_eq!(changes(&["grid.rows=4"]), ["learner.kind=ttd", "grid.rows=4"]);
+    assert_eq!(changes(&["learner.kind=q"]), ["learner.kind=q"]);
 }
