@@ -2,7 +2,7 @@
 
 use super::Finding;
 use engine::experiment::Plan;
-use engine::settings::{CombineWay, LearnerKind, RecoverTo, SETTINGS, UNNAMED_VIEW};
+use engine::settings::{CombineWay, LearnerKind, LearnerSettings, RecoverTo, SETTINGS, UNNAMED_VIEW};
 
 pub(super) fn check_setup(plan: &Plan, findings: &mut Vec<Finding>) {
     for row in SETTINGS {
@@ -66,23 +66,11 @@ fn idle(plan: &Plan, name: &str) -> Option<(String, &'static str)> {
     {
         return Some(why);
     }
-    let kind = |kinds: &[LearnerKind]| kinds.contains(&learner.kind);
+    if let Some(why) = idle_in_a_table(learner, name) {
+        return Some(why);
+    }
     let why = match (group, key) {
         ("laser", _) if !reads_laser => ("no rule reads the laser".to_owned(), "take it out, or read laser.nearest"),
-        ("learner", "window") if kind(&[LearnerKind::Q, LearnerKind::SarsaLambda]) => (
-            format!("learner \"{}\" has no window", learner.kind.word()),
-            "take it out, or write learner(\"ttd\", ...)",
-        ),
-        ("learner", "trace_decay") if kind(&[LearnerKind::Q]) => {
-            ("learner \"q\" has no traces".to_owned(), "take it out, or write learner(\"ttd\", ...)")
-        }
-        ("learner", "trace_decay") if learner.window == 1 && kind(&[LearnerKind::Ttd, LearnerKind::TtdCichosz]) => {
-            ("a window of 1 has no earlier states".to_owned(), "set learner.window to 3 or more, or take it out")
-        }
-        ("learner", "cooling_visits") if learner.temperature <= learner.temperature_end => (
-            "the temperature is the lowest from the start".to_owned(),
-            "set learner.temperature higher, or take it out",
-        ),
         ("learner", "failure_is_terminal" | "replay") | ("recovery", _) if !outline.recovers() => {
             ("no rule recovers".to_owned(), "add 'then recover' to a rule, or take it out")
         }
@@ -115,6 +103,29 @@ fn idle(plan: &Plan, name: &str) -> Option<(String, &'static str)> {
         ("grid", "fill") if settings.view.grid.rows == 1 => {
             ("a grid of one row has nothing to fill".to_owned(), "take it out, or use more rows")
         }
+        _ => return None,
+    };
+    Some(why)
+}
+
+/// Why a setting of a learner with a table has no effect under its kind and its other settings, and what to do about it.
+fn idle_in_a_table(learner: &LearnerSettings, name: &str) -> Option<(String, &'static str)> {
+    let kind = |kinds: &[LearnerKind]| kinds.contains(&learner.kind);
+    let why = match name {
+        "learner.window" if kind(&[LearnerKind::Q, LearnerKind::SarsaLambda]) => (
+            format!("learner \"{}\" has no window", learner.kind.word()),
+            "take it out, or write learner(\"ttd\", ...)",
+        ),
+        "learner.trace_decay" if kind(&[LearnerKind::Q]) => {
+            ("learner \"q\" has no traces".to_owned(), "take it out, or write learner(\"ttd\", ...)")
+        }
+        "learner.trace_decay" if learner.window == 1 && kind(&[LearnerKind::Ttd, LearnerKind::TtdCichosz]) => {
+            ("a window of 1 has no earlier states".to_owned(), "set learner.window to 3 or more, or take it out")
+        }
+        "learner.cooling_visits" if learner.temperature <= learner.temperature_end => (
+            "the temperature is the lowest from the start".to_owned(),
+            "set learner.temperature higher, or take it out",
+        ),
         _ => return None,
     };
     Some(why)

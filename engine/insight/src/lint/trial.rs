@@ -9,6 +9,8 @@ use engine::learner::Policy;
 use engine::outcome::Ending;
 use engine::random::{Random, Stream};
 use engine::robot::Robot;
+use engine::settings::LearnerKind;
+use engine::state::MAX_STATES;
 
 /// Steps with actions at random.
 pub(super) const RANDOM_STEPS: u64 = 1_000;
@@ -250,6 +252,10 @@ fn random(plan: &Plan, stop: &AtomicBool) -> Result<TrialDrive> {
 fn learning(plan: &Plan, stop: &AtomicBool) -> Result<(Vec<TrialStep>, Vec<RuleTrial>, Policy)> {
     let mut plan = plan.clone();
     plan.settings.run.steps = LEARNING_STEPS;
+    if plan.state_map()?.states() <= MAX_STATES && plan.settings.learner.kind == LearnerKind::Memory {
+        // In so few steps a table tries more than a learner that remembers, and to try is what this is for.
+        plan.settings.learner.kind = LearnerKind::Ttd;
+    }
     let mut ledger = Ledger::new(&plan, LEARNING_STEPS);
     let learned = learn_into(&plan, SEED, stop, &|_| (), &mut ledger)?;
     let mut rules = vec![RuleTrial::default(); plan.behaviour.rules().len()];
