@@ -18,7 +18,7 @@ pub const PLUGIN_SYMBOL: &str = "engine_filter";
 /// Bytes of every message buffer, the ending 0 included.
 pub const MESSAGE_BYTES: usize = 256;
 
-/// A bit of [`RawPlugin::reads`]: of colour the filter sees the brightness alone, and so likes grey frames best.
+/// A bit of [`RawFirst::reads`]: of colour the filter sees the brightness alone, and so likes grey frames best.
 pub const BRIGHTNESS: u32 = 8;
 
 /// It worked.

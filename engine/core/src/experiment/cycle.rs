@@ -62,7 +62,7 @@ impl<R: Robot> Cycle<R> {
         Self::with_eyes(plan, robot, plan.eyes()?, Vec::new())
     }
 
-    /// A cycle whose eyes go on from what others kept, see [`Cycle::kept`]; from nothing if that is empty.
+    /// A cycle whose eyes go on from what the filters of others kept; from nothing if that is empty.
     ///
     /// # Errors
     /// As [`Cycle::new`], and if the plan's filters do not keep such a thing.
