@@ -52,10 +52,7 @@ fn every_seeded_mistake_is_found_in_its_line() {
 #[test]
 fn nothing_is_found_in_scripts_that_ship() {
     for path in scripts("scripts") {
-        // The paper's erroneous reward is meant to be one: slow turning earns more than the corridor, line by line.
-        let known =
-            if path.ends_with("corridor-erroneous.rhai") { vec![("W-EXPLOIT".to_owned(), 13)] } else { Vec::new() };
-        assert_eq!(found(&path), known, "{}", path.display());
+        assert_eq!(found(&path), Vec::new(), "{}", path.display());
     }
 }
 

@@ -108,15 +108,22 @@ impl LintTrial {
     /// # Errors
     /// If a sensor, a filter or the script fails.
     pub fn run(plan: &Plan, threads: usize, stop: &AtomicBool) -> Result<Self> {
-        let drives = in_parallel(&[0, 1], threads, |kind| match kind {
+        // In so few steps a table tries more than a learner that remembers, and to try is what this is for.
+        let mut by_table = plan.clone();
+        by_table.settings.learner.kind = LearnerKind::Ttd;
+        let remembers = plan.settings.learner.kind == LearnerKind::Memory;
+        let both = remembers && plan.state_map()?.states() <= MAX_STATES;
+        let kinds: &[u64] = if both { &[0, 1, 2] } else { &[0, 2] };
+        let drives = in_parallel(kinds, threads, |kind| match kind {
             0 => random(plan, stop).map(|drive| (drive.steps, drive.rules, None)),
+            1 => learning(&by_table, stop).map(|(steps, rules, policy)| (steps, rules, Some(policy))),
             _ => learning(plan, stop).map(|(steps, rules, policy)| (steps, rules, Some(policy))),
         })?;
         let rules = vec![RuleTrial::default(); plan.behaviour.rules().len()];
         let mut trial = Self { transitions: Vec::new(), learned: None, rules };
         for (steps, rules, policy) in drives {
             trial.add(&steps, &rules);
-            trial.learned = policy.or(trial.learned);
+            trial.learned = trial.learned.or(policy);
         }
         Ok(trial)
     }
@@ -252,10 +259,6 @@ fn random(plan: &Plan, stop: &AtomicBool) -> Result<TrialDrive> {
 fn learning(plan: &Plan, stop: &AtomicBool) -> Result<(Vec<TrialStep>, Vec<RuleTrial>, Policy)> {
     let mut plan = plan.clone();
     plan.settings.run.steps = LEARNING_STEPS;
-    if plan.state_map()?.states() <= MAX_STATES && plan.settings.learner.kind == LearnerKind::Memory {
-        // In so few steps a table tries more than a learner that remembers, and to try is what this is for.
-        plan.settings.learner.kind = LearnerKind::Ttd;
-    }
     let mut ledger = Ledger::new(&plan, LEARNING_STEPS);
     let learned = learn_into(&plan, SEED, stop, &|_| (), &mut ledger)?;
     let mut rules = vec![RuleTrial::default(); plan.behaviour.rules().len()];
