@@ -153,7 +153,7 @@ impl Learning {
         Self::watched(plan, seed, &[])
     }
 
-    /// The same, with the rules of other plans that judge along.
+    /// A learning robot beside which the rules of other plans judge along.
     fn watched(plan: &Plan, seed: u64, others: &[&Plan]) -> Result<Self> {
         let cycle = Cycle::watched(plan, Phase::Learning.robot(plan, seed)?, others, &[])?;
         let learner = plan.first_learner(cycle.state_map(), seed)?;
@@ -255,7 +255,7 @@ impl<R: Robot, L: Learner> Learning<R, L> {
         self.swap_rejudged(plan, carry, &[], ledger)
     }
 
-    /// The same; of [`Carry::Rescore`], with what the new rules say of the latest steps, see [`super::rejudge`].
+    /// A swap that may rescore: `said` is what the new rules say of the latest steps, see [`super::rejudge`].
     ///
     /// # Errors
     /// As [`Learning::swap`].

@@ -80,7 +80,7 @@ impl<'a> Playback<'a> {
         Self::judged_by(plan, seed, phase, ledger, None)
     }
 
-    /// The same, with the rules of another plan that judge along until it goes back.
+    /// A playback beside which the rules of another plan judge along until it goes back.
     pub(super) fn judged_by(
         plan: &'a Plan,
         seed: u64,

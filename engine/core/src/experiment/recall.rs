@@ -127,7 +127,7 @@ impl Recall {
 }
 
 impl ValueReasons {
-    /// The same for a reader: of the steps behind it only the latest few, all numbers with five digits.
+    /// These reasons for a reader: of the steps behind the value only the latest few, all numbers with five digits.
     #[must_use]
     pub fn brief(mut self, tries: usize) -> Self {
         self.tries.truncate(tries);

@@ -33,7 +33,7 @@ impl ShippedLearner {
         }
     }
 
-    /// The same with another stream of random numbers.
+    /// This learner with another stream of random numbers.
     #[must_use]
     pub(crate) fn with_random(self, random: Random) -> Self {
         match self {

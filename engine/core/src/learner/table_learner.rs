@@ -33,7 +33,7 @@ impl TableLearner {
         Self { table, softmax, backup: backup(settings, mirror.as_ref()), mirror, failure_is_terminal, random }
     }
 
-    /// The same with another stream of random numbers.
+    /// This learner with another stream of random numbers.
     pub(super) fn with_random(self, random: Random) -> Self {
         Self { random, ..self }
     }

@@ -68,8 +68,9 @@ impl PixelCanvas for Weights<'_> {
     #[inline(always)]
     fn spots(&mut self, _: &Looks, look: &TextureLook, first: usize, count: usize, indices: &[u8; BATCH]) {
         let [start, step] = look.weights;
-        let weights = indices.map(|index| start.wrapping_add(step.wrapping_mul(u16::from(index))));
-        self.write(first, count, &weights);
+        for (pixel, index) in self.0[first..first + count].iter_mut().zip(indices) {
+            *pixel = start.wrapping_add(step.wrapping_mul(u16::from(*index)));
+        }
     }
 
     #[inline(always)]

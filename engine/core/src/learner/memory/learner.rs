@@ -202,7 +202,7 @@ impl MemoryLearner {
         self.scale.update(&self.sums.totals);
     }
 
-    /// The same with another stream of random numbers.
+    /// This learner with another stream of random numbers.
     #[must_use]
     pub(in crate::learner) fn with_random(self, random: Random) -> Self {
         Self { random, ..self }
