@@ -232,3 +232,16 @@ pub fn printable(text: &str) -> String {
     }
     out
 }
+
+/// Digits with something between thousands: `5,200` with a comma.
+#[must_use]
+pub fn grouped(digits: &str, between: &str) -> String {
+    let mut out = String::new();
+    for (index, digit) in digits.char_indices() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            out.push_str(between);
+        }
+        out.push(digit);
+    }
+    out
+}

@@ -11,6 +11,8 @@
 //! | [`whole`], of 1234 | `1,234` | counts in the terminal of the live page |
 //! | [`bounded`] | `-1235` | the gallery of packs, where strangers choose the number |
 
+use engine::diagnostic::grouped;
+
 /// At most three places, with a plain minus.
 #[must_use]
 pub fn short(value: f64) -> String {
@@ -92,18 +94,6 @@ fn parts(value: f64, places: usize) -> (&'static str, String, String) {
     let (whole, part) = plain.split_at(plain.find('.').unwrap_or(plain.len()));
     let is_zero = !plain.bytes().any(|digit| (b'1'..=b'9').contains(&digit));
     (if value < 0.0 && !is_zero { "−" } else { "" }, whole.to_owned(), part.to_owned())
-}
-
-/// Digits with something between thousands.
-fn grouped(digits: &str, between: &str) -> String {
-    let mut out = String::new();
-    for (index, digit) in digits.char_indices() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            out.push_str(between);
-        }
-        out.push(digit);
-    }
-    out
 }
 
 #[cfg(test)]

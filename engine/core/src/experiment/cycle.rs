@@ -67,9 +67,7 @@ impl<R: Robot> Cycle<R> {
     /// # Errors
     /// As [`Cycle::new`], and if the plan's filters do not keep such a thing.
     pub fn going_on_from(plan: &Plan, robot: R, kept: &[u8]) -> Result<Self> {
-        let mut eyes = plan.eyes()?;
-        eyes.go_on_from(kept)?;
-        Self::with_eyes(plan, robot, eyes, Vec::new())
+        Self::watched(plan, robot, &[], kept)
     }
 
     /// A cycle whose states come from another map than the plan's grid.

@@ -8,7 +8,7 @@ use std::sync::atomic::AtomicBool;
 
 use super::learning::learn_through;
 use super::{Ledger, Plan};
-use crate::diagnostic::{Diagnostic, Result, SourceText, printable};
+use crate::diagnostic::{Diagnostic, Result, SourceText, grouped, printable};
 use crate::learner::{Carry, Learner, ShippedLearner, shipped_learner};
 use crate::settings::{LearnerKind, Settings};
 use crate::state::StateMap;
@@ -50,7 +50,7 @@ impl Origin {
     #[must_use]
     pub fn carried(&self, next: &Plan) -> String {
         let remembered = self.steps().min(next.settings.learner.memory_steps);
-        let memory = format!("the memory of {} steps", grouped(remembered));
+        let memory = format!("the memory of {} steps", grouped(&remembered.to_string(), ","));
         match self.carry {
             Carry::Keep if next.settings.learner.kind != LearnerKind::Memory => {
                 "kept the table and its visits".to_owned()
@@ -183,14 +183,4 @@ fn beyond_learning(old: &Plan, new: &Plan) -> Result<Option<(&'static str, Strin
         .or_else(|| differ("filters", &filters))
         .or_else(|| (old_map != new_map).then(|| ("states", old_map.clone(), new_map.clone())))
         .or_else(|| differ("actions", &|plan| actions(&plan.settings))))
-}
-
-/// `5,200`.
-fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let comma = |(at, digit): (usize, char)| {
-        let comma = at > 0 && (digits.len() - at).is_multiple_of(3);
-        comma.then_some(',').into_iter().chain([digit])
-    };
-    digits.chars().enumerate().flat_map(comma).collect()
 }

@@ -97,16 +97,17 @@ impl Weights<'_> {
     }
 }
 
-/// Repeats `pattern` until `range` is covered.
+/// Repeats `pattern` until `range` is covered, whole where the memory has room for it.
 #[inline(always)]
 fn write_over<T: Copy, const LENGTH: usize>(memory: &mut [T], pattern: &[T; LENGTH], range: Range<usize>) {
-    let mut at = range.start;
-    while at < range.end {
-        if let Some(part) = memory.get_mut(at..).and_then(<[T]>::first_chunk_mut) {
+    let whole = range.len().next_multiple_of(LENGTH);
+    if let Some(parts) = memory.get_mut(range.start..range.start + whole) {
+        for part in parts.as_chunks_mut::<LENGTH>().0 {
             *part = *pattern;
-        } else if let Some(part) = memory.get_mut(at..) {
-            part.copy_from_slice(&pattern[..part.len()]);
         }
-        at += LENGTH;
+        return;
+    }
+    for part in memory[range].chunks_mut(LENGTH) {
+        part.copy_from_slice(&pattern[..part.len()]);
     }
 }
