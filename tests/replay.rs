@@ -147,6 +147,22 @@ fn a_forged_picture_or_page_is_named_and_one_that_is_gone_is_told() {
 }
 
 #[test]
+fn pictures_of_explained_steps_are_drawn_again_too() {
+    let bench = recorded(&[]);
+    bench.ok(&["explain", "a", "--step", "3"]);
+    bench.ok(&["explain", "a", "--step", "3", "--test"]);
+    // Of either step before and after, each in two files.
+    assert!(bench.ok(&["replay", "a", "--verify"]).contains("17 pictures and pages again"));
+    let (three, four) = (bench.path().join("a/step-3-after.png"), bench.path().join("a/step-4-after.png"));
+    let bytes = std::fs::read(&three).unwrap();
+    std::fs::write(&four, &bytes).unwrap();
+    let told = bench.failure(&["replay", "a", "--verify"]);
+    assert!(told.contains("E-LOG-DIFFERS") && told.contains("drawn again, step-4-after.png differs"), "{told}");
+    std::fs::rename(&four, bench.path().join("a/step-99999-after.png")).unwrap();
+    assert!(bench.failure(&["replay", "a", "--verify"]).contains("step-99999-after.png differs"));
+}
+
+#[test]
 fn what_is_drawn_of_a_checked_run_of_many_seeds_and_of_a_combination_is_compared() {
     let bench = recorded(&["--seeds", "3", "--check"]);
     // Curve, paths and the page; of the worst seed frame, policy and trajectories.

@@ -21,7 +21,7 @@ use crate::robot::{Robot, SimulatedRobot};
 const TEST_SEED_OFFSET: u64 = 0x5eed_0000_0000_0000;
 
 /// What a ledger holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Phase {
     /// Steps of learning.
     Learning,

@@ -97,17 +97,16 @@ impl Weights<'_> {
     }
 }
 
-/// Repeats `pattern` until `range` is covered, whole where the memory has room for it.
+/// Repeats `pattern` until `range` is covered, and beyond it where the memory has room.
 #[inline(always)]
 fn write_over<T: Copy, const LENGTH: usize>(memory: &mut [T], pattern: &[T; LENGTH], range: Range<usize>) {
-    let whole = range.len().next_multiple_of(LENGTH);
-    if let Some(parts) = memory.get_mut(range.start..range.start + whole) {
-        for part in parts.as_chunks_mut::<LENGTH>().0 {
-            *part = *pattern;
-        }
-        return;
+    let wanted = range.len().div_ceil(LENGTH);
+    let (parts, rest) = memory[range.start..].as_chunks_mut();
+    let whole = wanted.min(parts.len());
+    for part in &mut parts[..whole] {
+        *part = *pattern;
     }
-    for part in memory[range].chunks_mut(LENGTH) {
-        part.copy_from_slice(&pattern[..part.len()]);
+    if whole < wanted {
+        rest.copy_from_slice(&pattern[..rest.len()]);
     }
 }

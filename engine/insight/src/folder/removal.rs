@@ -58,6 +58,7 @@ fn remove(folder: &Path, own: &dyn Fn(&str) -> bool, kept: &mut Vec<PathBuf>) ->
 fn is_of_a_run(name: &str) -> bool {
     let picture = name.strip_suffix(".svg").or_else(|| name.strip_suffix(".png"));
     let explained = |stem: &str| {
+        let stem = stem.strip_prefix("test-").unwrap_or(stem);
         let step = stem.strip_prefix("step-").and_then(|rest| rest.rsplit_once('-'));
         step.is_some_and(|(_, side)| ["before", "after"].contains(&side))
     };
@@ -81,7 +82,7 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         let run = place.path().join("1-2");
         write(&run, &["run.toml", "summary.json", "paths.svg", "tag.txt", "1/run.toml", "1/log.bin", "2/run.toml"]);
-        write(&run, &["step-7-before.png", "rescore-mine/rescore.json"]);
+        write(&run, &["step-7-before.png", "test-step-7-after.svg", "rescore-mine/rescore.json"]);
         assert_eq!(remove_run(&run).unwrap(), Vec::<PathBuf>::new());
         assert!(!run.exists());
     }

@@ -5,15 +5,14 @@ use std::path::Path;
 
 use engine::diagnostic::{Diagnostic, Result, all_codes, code_page, excerpt, nearest_name, printable};
 use engine::experiment::{
-    FactReasons, GuardReasons, Phase, Plan, Playback, RuleReasons, RunLog, SeenView, StepReasons, UseReasons, ViewStage,
+    FactReasons, GuardReasons, Phase, Plan, Playback, RuleReasons, RunLog, StepReasons, UseReasons,
 };
-use engine::robot::Robot;
 use insight::folder::create_folder;
-use insight::report::{FrameData, FramePanel, Picture, frame};
 use insight::store::{RecordedRun, StoredRun};
 use insight::words::short;
 use serde::Serialize;
 
+use super::explained_step::{ExplainedStep, Side};
 use super::sources::catalogue;
 use super::value_chain::value_chain;
 use super::words::{fact, icon, motion};
@@ -67,9 +66,8 @@ pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::r
     create_folder(out)?;
     let mut playback = recalling(plan, *seed, phase, &recorded.log)?;
     playback.seek(step)?;
-    let stem = if arguments.test { format!("test-step-{step}") } else { format!("step-{step}") };
-    let stems = [format!("{stem}-before"), format!("{stem}-after")];
-    let before = draw_step(plan, &playback, &format!("step {step} of {name}: what the robot saw when it chose"))?;
+    let shown = ExplainedStep { phase, step };
+    let before = shown.draw(&playback, Side::Before)?;
     let Some(reasons) = StepReasons::of_next(&mut playback)? else {
         let message = format!("the log has {} steps of {name}, no step {step}", ledger.len());
         let error = Diagnostic::new("E-LOG-STEP", message).help("steps are counted from 0");
@@ -80,10 +78,10 @@ pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::r
         let error = Diagnostic::new("E-LOG-DIFFERS", message);
         return Err(Box::new(error.help("find where it begins to differ: engine replay RUN --verify")).into());
     }
-    before.write(out, &stems[0])?;
-    draw_step(plan, &playback, &format!("step {step} of {name}: what the robot saw at its end"))?
-        .write(out, &stems[1])?;
-    let pictures = stems.map(|stem| out.join(format!("{stem}.png")).display().to_string());
+    before.write(out, &shown.stem(Side::Before))?;
+    shown.draw(&playback, Side::After)?.write(out, &shown.stem(Side::After))?;
+    let pictures =
+        [Side::Before, Side::After].map(|side| out.join(format!("{}.png", shown.stem(side))).display().to_string());
     let (behaviour, world) = (plan.behaviour.name().to_owned(), plan.worlds.title());
     let kept = playback.cycle().kept_in_words().map(|(filter, words)| FilterKept { filter, words }).collect();
     let report = StepReport { behaviour, world, seed: *seed, phase: name, reasons, kept, pictures };
@@ -116,30 +114,6 @@ fn recalling<'a>(plan: &'a Plan, seed: u64, phase: Phase, log: &'a RunLog) -> Re
         }
         Phase::Test => Playback::new(plan, seed, phase, &log.test),
     }
-}
-
-/// Camera, each filter, grid.
-fn draw_step(plan: &Plan, playback: &Playback<'_>, title: &str) -> Result<Picture> {
-    let cycle = playback.cycle();
-    let image = &cycle.robot().photograph().unwrap_or_else(|| cycle.observation().sight().clone());
-    let mut panels = vec![FramePanel::image("camera", image)];
-    panels.extend(cycle.observation().depth.iter().map(|depth| FramePanel::image("depth", depth)));
-    let stages: Vec<ViewStage<'_>> = cycle.stages().collect();
-    let names: Vec<String> = stages.iter().map(ViewStage::name).collect();
-    panels.extend(stages.iter().zip(&names).map(|(stage, name)| FramePanel {
-        name,
-        format: stage.filter.writes,
-        pixels: stage.pixels,
-    }));
-    let views: Vec<SeenView> = cycle.views().collect();
-    frame(&FrameData {
-        title: &format!("{}, {title}", plan.behaviour.name()),
-        width_px: image.width_px,
-        height_px: image.height_px,
-        panels: &panels,
-        views: &views,
-        state: cycle.state(),
-    })
 }
 
 fn print(console: &mut Console, plan: &Plan, report: &StepReport) -> std::result::Result<(), ConsoleError> {

@@ -15,6 +15,7 @@ use insight::store::{
 use serde::Serialize;
 use serde_json::Value;
 
+use super::explained_step::redraw_steps;
 use super::stop::{INTERRUPTED, on_ctrl_c};
 use crate::console::{Console, ConsoleError};
 
@@ -44,26 +45,29 @@ pub(super) fn verify(
     if seeds.is_empty() || folder.join(LOG_FILE).exists() {
         let Some(again) = verify_seed(folder, filters, &stop)? else { return Ok(INTERRUPTED) };
         let drawn = again.shown.map(|(plan, result)| compare_drawn(folder, &plan, &[result], &stop)).transpose()?;
+        let drawn = with_explained(drawn, again.explained);
         if stop.load(Ordering::Relaxed) {
             return Ok(INTERRUPTED);
         }
         console.json(&again.verified)?;
-        return print(console, &again.verified, &drawn.unwrap_or_default()).map(|()| 0);
+        return print(console, &again.verified, &drawn).map(|()| 0);
     }
     check_first_run(folder, &seeds)?;
-    let (mut summaries, mut verified, mut shown) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut summaries, mut verified, mut shown, mut explained) = (Vec::new(), Vec::new(), Vec::new(), 0);
     for (seed, folder) in seeds {
         let Some(again) = verify_seed(&folder, filters, &stop)? else { return Ok(INTERRUPTED) };
         console.line(&format!("seed {seed}: the same"))?;
         summaries.extend(again.written);
         verified.push(again.verified);
+        explained += again.explained;
         // The page reads the logs from their files again.
         shown.extend(again.shown.map(|(plan, result)| (plan, SeedResult { log: None, ..result })));
     }
     let spread = as_json(&Spread::new(summaries))?;
     compare_values(folder, &read_json(&folder.join(SUMMARY_FILE))?, &spread)?;
     let (mut plans, results): (Vec<Plan>, Vec<SeedResult>) = shown.into_iter().unzip();
-    let drawn = plans.pop().map(|plan| compare_drawn(folder, &plan, &results, &stop)).transpose()?.unwrap_or_default();
+    let drawn = plans.pop().map(|plan| compare_drawn(folder, &plan, &results, &stop)).transpose()?;
+    let drawn = with_explained(drawn, explained);
     if stop.load(Ordering::Relaxed) {
         return Ok(INTERRUPTED);
     }
@@ -89,6 +93,8 @@ struct Again {
     verified: Verified,
     written: Option<Summary>,
     shown: Option<(Plan, SeedResult)>,
+    /// Pictures of explained steps that came out the same.
+    explained: usize,
 }
 
 /// One seed; nothing if it was stopped.
@@ -129,6 +135,8 @@ fn verify_seed(folder: &Path, filters: &Arc<Catalogue>, stop: &AtomicBool) -> Re
     if let Some(table) = run.as_ref().and_then(|run| disagreements_of(&plan, &run.tested)) {
         compare_file(folder, DISAGREEMENTS_FILE, &table)?;
     }
+    let explained = redraw_steps(folder, &plan, seed, &again)?;
+    refuse_different(folder, &explained)?;
     let learned_hash = || learned.map_or_else(String::new, |learned| learned.state_hash.clone());
     let state_hash = run.as_ref().map_or_else(learned_hash, |run| run.summary.state_hash.clone());
     let verified = Verified {
@@ -145,7 +153,7 @@ fn verify_seed(folder: &Path, filters: &Arc<Catalogue>, stop: &AtomicBool) -> Re
         let run = SeedRun { summary, ..run };
         (stored.plan.clone(), SeedResult { run, log: Some(again) })
     });
-    Ok(Some(Again { verified, written: summary, shown }))
+    Ok(Some(Again { verified, written: summary, shown, explained: explained.same }))
 }
 
 /// Draws pictures and pages again.
@@ -153,14 +161,28 @@ fn compare_drawn(folder: &Path, plan: &Plan, results: &[SeedResult], stop: &Atom
     let of_run = RunFolder::of_run(folder, !folder.join(LOG_FILE).exists());
     let checked = if of_run.shows_check() { check_behaviour_until(plan, 0, stop)? } else { None };
     let redrawn = of_run.redraw(plan, results, checked.as_ref())?;
-    if redrawn.different.is_empty() || stop.load(Ordering::Relaxed) {
-        return Ok(redrawn);
+    if !stop.load(Ordering::Relaxed) {
+        refuse_different(folder, &redrawn)?;
+    }
+    Ok(redrawn)
+}
+
+/// What was drawn again must be what stands in the folder.
+fn refuse_different(folder: &Path, redrawn: &Redrawn) -> Result<()> {
+    if redrawn.different.is_empty() {
+        return Ok(());
     }
     let folder = printable(&folder.display().to_string());
     let message = format!("'{folder}' shows what the run does not: drawn again, {} differs", named(&redrawn.different));
     let help = "steps and figures come out as they were recorded, so it was changed after the run, or drawn by another \
                 engine than this one: see 'engine' in run.toml, and run it again";
     Diagnostic::new("E-LOG-DIFFERS", message).help(help).fail()
+}
+
+/// Counts the pictures of explained steps among those that were drawn again.
+fn with_explained(drawn: Option<Redrawn>, explained: usize) -> Redrawn {
+    let drawn = drawn.unwrap_or_default();
+    Redrawn { same: drawn.same + explained, ..drawn }
 }
 
 fn named(files: &[PathBuf]) -> String {
