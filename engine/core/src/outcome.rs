@@ -111,6 +111,8 @@ pub struct Endings {
     pub goals: u64,
     /// Neither.
     pub restarts: u64,
+    /// No outcome: the robot had stayed as long as it may, and went on elsewhere.
+    pub hops: u64,
 }
 
 impl Endings {
@@ -124,10 +126,16 @@ impl Endings {
         }
     }
 
-    /// All of them.
+    /// All that had an outcome.
     #[must_use]
     pub fn attempts(&self) -> u64 {
         self.failures + self.goals + self.restarts
+    }
+
+    /// Goals as a share of all attempts, those included that were broken off before they had an outcome; 0 without any.
+    #[must_use]
+    pub fn goal_rate(&self) -> f64 {
+        self.goals as f64 / (self.attempts() + self.hops).max(1) as f64
     }
 }
 
@@ -137,6 +145,7 @@ impl Sum for Endings {
             failures: sum.failures + one.failures,
             goals: sum.goals + one.goals,
             restarts: sum.restarts + one.restarts,
+            hops: sum.hops + one.hops,
         })
     }
 }

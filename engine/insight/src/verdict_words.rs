@@ -27,6 +27,14 @@ pub fn headline(verdict: &SuccessVerdict) -> String {
         Because::BlindToo => {
             "cannot be told: a robot that does not look meets every condition too; ask for what it must see".to_owned()
         }
+        Because::TooFew => {
+            "cannot be told: fewer than five attempts ended in the test; test it longer: engine test RUN --steps N".to_owned()
+        }
+        Because::NotMeasured => {
+            "cannot be told: no attempt lasts 20 s, over which standing, spinning and going to and fro are told; let attempts \
+             last longer, or name a success of your own"
+                .to_owned()
+        }
         Because::BrokenOff => "cannot be told: the test was broken off; test it again: engine test RUN".to_owned(),
         Because::RewardOnly => {
             format!("cannot be told from rewards alone, which are the script's own word; write: {WRITE}")

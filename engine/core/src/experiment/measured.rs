@@ -11,12 +11,12 @@ use crate::verdict::{AskedFigure, MeasureTotal, StageTotal, TestFigures};
 const TASK_SPEED_M_PER_S: f64 = 0.1;
 
 /// What was counted in so many steps, and what the truth says; a robot that does not know where it is has gone nowhere.
-/// `goals_steps` are the lengths of the attempts that reached their goals.
+/// `goals_steps` are the lengths of the attempts that reached their goals, `goal_crashes` how many of them ended in a crash.
 pub(super) fn figures(
     plan: &Plan,
     steps: u64,
     tally: &Tally,
-    goals_steps: &[u32],
+    (goals_steps, goal_crashes): (&[u32], u64),
     truth: Option<&Truth>,
     asked: Vec<AskedFigure>,
     (stage_rates, measures): (Vec<StageTotal>, Vec<MeasureTotal>),
@@ -36,7 +36,9 @@ pub(super) fn figures(
         goals: endings.goals,
         restarts: endings.restarts,
         failures_per_1000: per_1000(endings.failures as f64),
-        goal_rate: endings.goals as f64 / endings.attempts().max(1) as f64,
+        hops: endings.hops,
+        goal_rate: endings.goal_rate(),
+        goal_crashes,
         goal_s: goals_steps.iter().map(|steps| f64::from(*steps) * period_s).collect::<Sorted>().upper_median(),
         reinforcement_per_1000: per_1000(tally.curve().iter().sum()),
         distance_m,
@@ -50,6 +52,7 @@ pub(super) fn figures(
         contacts: tally.contacts(),
         forbidden_per_1000: plan.behaviour.guards().next().map(|_| per_1000(tally.guarded() as f64)),
         mean_speed: distance_m / seconds,
+        no_spells: truth.is_some() && spells.all == 0,
         spinning: share(spells.spinning),
         standing: share(spells.standing),
         circling: share(spells.circling),

@@ -13,7 +13,7 @@ use crate::judge::Judge;
 use crate::learner::{Mirror, Task};
 use crate::random::{Random, Stream};
 use crate::script::{Behaviour, Draft, Unread};
-use crate::settings::Settings;
+use crate::settings::{PartSettings, Settings};
 use crate::state::{Grid, StateMap};
 use crate::verdict::Success;
 use crate::world::{Layout, WorldSet};
@@ -285,7 +285,10 @@ impl Plan {
     #[must_use]
     pub fn success(&self) -> Success {
         let run = &self.settings.run;
-        self.behaviour.success(self.worlds.have_laps(), run)
+        let success = self.behaviour.success(self.worlds.have_laps(), run);
+        let parts = &self.settings.state;
+        let blind = self.learns() && !parts.is_empty() && parts.iter().all(PartSettings::is_blind);
+        if blind { success.of_a_blind_robot() } else { success }
     }
 
     /// The plan with the policies that its script combines.

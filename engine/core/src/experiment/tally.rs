@@ -36,6 +36,7 @@ impl Tally {
         window.steps += 1;
         window.reinforcement += step.reward;
         window.endings.count(step.ending());
+        window.endings.hops += u64::from(step.hop);
         window.contacts += u64::from(step.contact);
         window.stages += u64::from(step.entered.is_some());
         window.guarded += u64::from(step.guarded);

@@ -192,12 +192,19 @@ pub fn test_robot<R: Robot>(
     let chosen = vec![0; plan.motions().len()];
     let used = UseCounts::new(plan);
     let worlds = WorldCounts::new(plan);
-    let mut counts = Counts { tally, chosen, used, worlds, attempt_steps: 0, goals_steps, stop };
+    let mut counts = Counts { tally, chosen, used, worlds, attempt_steps: 0, goals_steps, goal_crashes: 0, stop };
     let mut observers =
         (&mut hash, ((&mut truth, also), ((&mut trail, (&mut probes, &mut staged)), (&mut glimpse, &mut counts))));
     let steps = drive(cycle, chooser, &mut observers, run.test_steps)?;
-    let figures =
-        figures(plan, steps, &counts.tally, &counts.goals_steps, truth.as_ref(), probes.finish(), staged.finish());
+    let figures = figures(
+        plan,
+        steps,
+        &counts.tally,
+        (&counts.goals_steps, counts.goal_crashes),
+        truth.as_ref(),
+        probes.finish(),
+        staged.finish(),
+    );
     let snapshot = glimpse.taken.unwrap_or_else(|| Snapshot::of(cycle));
     let (trail, state_hash) = (trail.finish(), hash.finish());
     let Counts { tally, chosen, used, worlds, .. } = counts;
@@ -215,6 +222,8 @@ struct Counts<'a> {
     /// Steps of the present attempt, and of each that reached its goal.
     attempt_steps: u32,
     goals_steps: Vec<u32>,
+    /// Goals in whose last step the robot touched something or fell.
+    goal_crashes: u64,
     stop: &'a AtomicBool,
 }
 
@@ -228,6 +237,8 @@ impl<R: Robot> Observer<R> for Counts<'_> {
         }
         if let Some(ending) = step.ending() {
             let steps = std::mem::take(&mut self.attempt_steps);
+            let crashed = step.contact || cycle.facts().fallen;
+            self.goal_crashes += u64::from(ending == Ending::Goal && crashed);
             if ending == Ending::Goal && self.goals_steps.len() < self.goals_steps.capacity() {
                 self.goals_steps.push(steps);
             }

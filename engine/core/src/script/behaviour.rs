@@ -10,7 +10,7 @@ use crate::judge::compiled::CompiledScript;
 use crate::judge::memory::Remembered;
 use crate::judge::rule::CompiledRule;
 use crate::judge::uses::CompiledUse;
-use crate::judge::{Judge, RuleText, reach};
+use crate::judge::{FactId, Judge, RuleText, reach};
 use crate::outcome::Then;
 use crate::settings::{Edition, LaserSettings, RunSettings, ScanFan, Settings};
 use crate::verdict::{Endable, Success, SuccessCondition};
@@ -49,7 +49,8 @@ impl Behaviour {
             RuleText { name: "reward".to_owned(), line, text }
         }));
         let stages = !compiled.stages.is_empty();
-        let endable = Endable { stages, ..endable(&compiled.rules, outline.reward_recovers) };
+        let contact_pays = pays_for_contact(&compiled.rules, &outline);
+        let endable = Endable { stages, contact_pays, ..endable(&compiled.rules, outline.reward_recovers) };
         let compiled = Arc::new(compiled);
         let mut settings = settings;
         let restarts = compiled.rules.iter().any(|rule| rule.then == Some(Then::Restart));
@@ -261,5 +262,14 @@ fn endable(rules: &[CompiledRule], by_function: bool) -> Endable {
             })
     };
     let (failure, goal) = (may(Then::Fail, |value| value >= 0.0), may(Then::Goal, |value| value <= 0.0));
-    Endable { failure, goal, stages: false }
+    Endable { failure, goal, ..Endable::default() }
+}
+
+/// Whether a rule gives something good for a contact.
+fn pays_for_contact(rules: &[CompiledRule], outline: &ScriptOutline) -> bool {
+    let pays = |rule: &CompiledRule| rule.fixed_value().is_some_and(|value| value > 0.0);
+    rules
+        .iter()
+        .zip(&outline.rules)
+        .any(|(rule, outline)| pays(rule) && outline.condition.asks_for(FactId::RobotContact))
 }

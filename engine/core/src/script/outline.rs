@@ -43,6 +43,18 @@ pub enum Condition {
     Other,
 }
 
+impl Condition {
+    /// Whether it asks for a fact to be true, by itself or beside others.
+    #[must_use]
+    pub fn asks_for(&self, fact: FactId) -> bool {
+        match self {
+            Self::Flag(named, denied) => named.id == fact && !denied,
+            Self::All(parts) | Self::Any(parts) => parts.iter().any(|part| part.asks_for(fact)),
+            Self::Compare(_) | Self::Other => false,
+        }
+    }
+}
+
 /// One rule.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RuleOutline {

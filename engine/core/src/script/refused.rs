@@ -40,6 +40,9 @@ pub(super) fn syntax(source: &SourceText, error: &ParseError, own_names: &[Strin
         }
         ParseErrorType::UnexpectedEOF => at("the script ends too early".to_owned(), "something is missing here")
             .help("look for a bracket that is never closed"),
+        ParseErrorType::MissingToken(token, _) if token == ";" && is_decimal_comma(source, *position) => {
+            at("a number has a point, not a comma".to_owned(), "a comma").help("write 0.25, not 0,25")
+        }
         ParseErrorType::MissingToken(token, _) if token == ";" => {
             at("a ';' is missing before this".to_owned(), "a new statement begins here")
                 .help("end every statement with ';'")
@@ -129,4 +132,11 @@ pub(super) fn unknown_function_at(source: &SourceText, at: usize, name: &str, ow
             diagnostic.help(format!("there are: {}", names.join(", ")))
         }
     }
+}
+
+/// Whether a comma between two digits stands here.
+fn is_decimal_comma(source: &SourceText, position: Position) -> bool {
+    let (before, after) = source.text.split_at_checked(offset(source, position)).unwrap_or_default();
+    let is_digit = |c: Option<char>| c.is_some_and(|c| c.is_ascii_digit());
+    is_digit(before.chars().next_back()) && after.strip_prefix(',').is_some_and(|rest| is_digit(rest.chars().next()))
 }

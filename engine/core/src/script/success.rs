@@ -185,7 +185,9 @@ impl SuccessCompiler<'_> {
                 Ok(Kinded::Number(Term::OfOne(row.1, Box::new(self.number(of)?))))
             }
             [a, b] if let Some(comparison) = Comparison::of(name) => {
-                Ok(Kinded::Flag(Term::Compare(comparison, Box::new([self.number(a)?, self.number(b)?]))))
+                let sides = [self.number(a)?, self.number(b)?];
+                self.check_share(&sides, [first(a), first(b)])?;
+                Ok(Kinded::Flag(Term::Compare(comparison, Box::new(sides))))
             }
             [a, b] if let Some(operator) = Arithmetic::of(name) => {
                 Ok(Kinded::Number(Term::Binary(operator, Box::new([self.number(a)?, self.number(b)?]))))
@@ -199,6 +201,24 @@ impl SuccessCompiler<'_> {
                 self.wrong(position, message, "not here", help)
             }
         }
+    }
+
+    /// A share is never beyond 0 to 1, so whoever compares it with 90 means 0.9.
+    fn check_share(&self, sides: &[Term; 2], at: [Position; 2]) -> Compiled<()> {
+        let (figure, value, at) = match sides {
+            [Term::TestFigure(asked), Term::Constant(value)] => (asked.figure, *value, at[1]),
+            [Term::Constant(value), Term::TestFigure(asked)] => (asked.figure, *value, at[0]),
+            _ => return Ok(()),
+        };
+        if figure.unit != "share" || (0.0..=1.0).contains(&value) {
+            return Ok(());
+        }
+        let message = format!("'{}' is a share, from 0 to 1: it never comes to {value}", figure.name);
+        let help = match (1.0..=100.0).contains(&value) {
+            true => format!("{value} % is written {}", value / 100.0),
+            false => "write a number from 0 to 1".to_owned(),
+        };
+        self.wrong(at, message, "beyond it", help)
     }
 
     /// A constant of the script, or a figure.

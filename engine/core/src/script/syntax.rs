@@ -176,7 +176,7 @@ fn out_of_order(read: Read, ahead: &str) -> Option<&'static str> {
         (Read::Name | Read::Stage, "for" | "once" | "per" | "then" | "=>") => ORDER,
         (Read::Condition, "in" | "per" | "then") | (Read::Once, "for" | "in" | "per") => ORDER,
         (Read::Value, "once" | "for" | "in" | "when") => ORDER,
-        (Read::Condition, ",") => "conditions are joined with '&&' (and) or '||' (or)",
+        (Read::Condition, ",") => "conditions are joined with '&&' (and) or '||' (or), and a number has a point: 0.25",
         (Read::Value | Read::Second, "to") => "'to' stands behind what ends the attempt: then fail to \"nearest\"",
         (Read::Outcome | Read::End, "then") => "a rule has one 'then': write a second rule",
         _ => return None,

@@ -98,6 +98,15 @@ impl ViewSettings {
 }
 
 impl PartSettings {
+    /// Whether it tells nothing of what the robot senses: the time, or what it does itself.
+    #[must_use]
+    pub fn is_blind(&self) -> bool {
+        let Self::Bins { of, .. } = self else { return false };
+        let is_word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.');
+        let names = || of.split(|c| !is_word(c)).filter(|word| word.starts_with(char::is_alphabetic));
+        names().next().is_some() && names().all(|name| name.starts_with("time.") || name.starts_with("action."))
+    }
+
     /// How many values it tells apart, if it is no view.
     #[must_use]
     pub fn labels(&self) -> Vec<String> {

@@ -10,6 +10,8 @@ use crate::judge::expression::{Arithmetic, Comparison};
 pub(crate) struct Endable {
     pub failure: bool,
     pub goal: bool,
+    /// Whether a rule pays for a contact.
+    pub contact_pays: bool,
     /// Whether there are stages.
     pub stages: bool,
 }
@@ -18,6 +20,8 @@ pub(crate) struct Endable {
 const FEW_FAILURES: f64 = 10.0;
 /// At most so many steps with a contact: where goals can be reached, a crash may be called one.
 const FEW_CONTACTS: f64 = 20.0;
+/// At most this share of the goals in whose last step it touches something or falls.
+const FEW_CRASHES: f64 = 0.2;
 /// At most so many restarts: who is put back every few seconds is carried, and gets along by that.
 const FEW_RESTARTS: f64 = 10.0;
 /// At least this share of the attempts.
@@ -55,8 +59,9 @@ pub(crate) fn default_conditions(endable: Endable, has_route: bool, seconds: f64
         let goals = than(GreaterOrEqual, Test, "goal_rate", MOST_GOALS);
         let chance = than(Less, Untrained, "goal_rate", MOST_GOALS);
         ask("reaches its goals", "test.goal_rate >= 0.8 && untrained.goal_rate < 0.8", Term::And(vec![goals, chance]));
-        let text = format!("test.contacts_per_1000 <= {FEW_CONTACTS}");
-        ask("touches little", &text, than(LessOrEqual, Test, "contacts_per_1000", FEW_CONTACTS));
+        let text = format!("test.contacts_per_1000 <= {FEW_CONTACTS} && test.goal_crashes <= {FEW_CRASHES}");
+        let few = than(LessOrEqual, Test, "contacts_per_1000", FEW_CONTACTS);
+        ask("touches little", &text, Term::And(vec![few, than(LessOrEqual, Test, "goal_crashes", FEW_CRASHES)]));
     } else if endable.failure {
         let chance = figure(Untrained, "metres_per_intervention");
         let chance = Term::Binary(Arithmetic::Multiply, Box::new([Term::Constant(BEATS_CHANCE), chance]));
@@ -79,6 +84,10 @@ pub(crate) fn default_conditions(endable: Endable, has_route: bool, seconds: f64
             let text = format!("test.idle <= {MOST_IDLE} && test.restarts_per_1000 <= {FEW_RESTARTS}");
             ask("gets along", &text, Term::And(vec![moves, by_itself]));
         }
+    }
+    if endable.contact_pays && endable.failure && !endable.goal {
+        let text = format!("test.contacts_per_1000 <= {FEW_CONTACTS}");
+        ask("touches little", &text, than(LessOrEqual, Test, "contacts_per_1000", FEW_CONTACTS));
     }
     if endable.stages && !endable.goal {
         let (own, chance) = (figure(Test, "stages_per_1000"), figure(Untrained, "stages_per_1000"));

@@ -19,8 +19,14 @@ pub struct TestFigures {
     pub restarts: u64,
     /// Failures for 1,000 steps.
     pub failures_per_1000: f64,
-    /// Goals as a share of all attempts that ended; 0 if none did.
+    /// Attempts that were broken off by going on elsewhere, see `run.stay_steps`; absent if none was.
+    #[serde(default, skip_serializing_if = "is_none_of")]
+    pub hops: u64,
+    /// Goals as a share of all attempts that ended, broken off ones included; 0 if none did.
     pub goal_rate: f64,
+    /// Goals in whose last step the body touched something or the robot fell; absent if there was none.
+    #[serde(default, skip_serializing_if = "is_none_of")]
+    pub goal_crashes: u64,
     /// Upper median duration of the attempts that ended in a goal, seconds; null if none did.
     pub goal_s: Option<f64>,
     /// Sum of the rewards for 1,000 steps.
@@ -47,6 +53,9 @@ pub struct TestFigures {
     pub forbidden_per_1000: Option<f64>,
     /// Path length over time, m/s.
     pub mean_speed: f64,
+    /// True if no attempt lasted 20 s, so that the shares of spells say nothing; absent else.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub no_spells: bool,
     /// Share of spells of 20 s with a full turn on a radius below 0.3 m.
     pub spinning: f64,
     /// Share of spells with less than 0.2 m of path.
@@ -84,11 +93,23 @@ pub struct TestFigures {
     pub asked: Vec<AskedFigure>,
 }
 
+/// Whether a count is 0.
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde passes it so")]
+fn is_none_of(count: &u64) -> bool {
+    *count == 0
+}
+
 impl TestFigures {
-    /// How many attempts ended.
+    /// How many attempts had an outcome.
     #[must_use]
     pub fn attempts(&self) -> u64 {
         self.failures + self.goals + self.restarts
+    }
+
+    /// Crashes as a share of the goals; 0 without goals.
+    #[must_use]
+    pub fn goal_crash_rate(&self) -> f64 {
+        self.goal_crashes as f64 / self.goals.max(1) as f64
     }
 
     /// A count for 1,000 steps.
@@ -111,6 +132,8 @@ pub(crate) enum Source {
     Test(fn(&TestFigures) -> f64),
     /// Only a test in a world with a lap route has it.
     Route(fn(&TestFigures) -> Option<f64>),
+    /// Only a test in which an attempt lasted 20 s has it.
+    Spells(fn(&TestFigures) -> f64),
     /// Only a test in which an attempt reached its goal has it; else it counts as the whole test's time.
     Goal(fn(&TestFigures) -> Option<f64>),
     /// Of the rule that is named.
@@ -182,7 +205,7 @@ impl TestFigure {
     #[must_use]
     pub(crate) fn takes(&self) -> Takes {
         match self.source {
-            Source::Test(_) | Source::Route(_) | Source::Goal(_) => Takes::Nothing,
+            Source::Test(_) | Source::Route(_) | Source::Spells(_) | Source::Goal(_) => Takes::Nothing,
             Source::Asked(Probe::FloorCovered | Probe::Gates | Probe::GateErrors) => Takes::Nothing,
             Source::Asked(Probe::Visits) => Takes::Place,
             Source::Rule(_) => Takes::Rule,
@@ -225,6 +248,10 @@ const fn route(
     TestFigure { name, unit, about, source: Source::Route(get), window: None }
 }
 
+const fn spells(name: &'static str, get: fn(&TestFigures) -> f64, about: &'static str) -> TestFigure {
+    TestFigure { name, unit: "share", about, source: Source::Spells(get), window: None }
+}
+
 const fn of_measure(name: &'static str, get: fn(&MeasureTotal) -> f64, about: &'static str) -> TestFigure {
     TestFigure { name, unit: "of the measure", about, source: Source::Measure(get), window: None }
 }
@@ -248,8 +275,19 @@ pub const FIGURES: &[TestFigure] = &[
         .and_of_windows(|counts, _| counts.per_1000(counts.window.endings.goals)),
     test("restarts_per_1000", "", |test| test.per_1000(test.restarts), "Restarts in 1,000 steps.")
         .and_of_windows(|counts, _| counts.per_1000(counts.window.endings.restarts)),
-    test("goal_rate", "share", |test| test.goal_rate, "Goals as a share of the attempts that ended; 0 if none did.")
-        .and_of_windows(|counts, _| counts.goal_rate()),
+    test(
+        "goal_rate",
+        "share",
+        |test| test.goal_rate,
+        "Goals as a share of the attempts that ended, broken off ones included; 0 if none did.",
+    )
+    .and_of_windows(|counts, _| counts.goal_rate()),
+    test(
+        "goal_crashes",
+        "share",
+        TestFigures::goal_crash_rate,
+        "Goals in whose last step the body touched something or fell, as a share of the goals.",
+    ),
     TestFigure {
         name: "goal_s",
         unit: "seconds",
@@ -323,17 +361,12 @@ pub const FIGURES: &[TestFigure] = &[
         |test| test.metres_per_intervention,
         "The same over failures + restarts + 1: what the robot does by itself.",
     ),
-    test("spinning", "share", |test| test.spinning, "Spells of 20 s with a full turn on a radius below 0.3 m."),
-    test("standing", "share", |test| test.standing, "Spells of 20 s with less than 0.2 m of path."),
-    test("circling", "share", |test| test.circling, "Spells of 20 s that went round in a wider circle."),
-    test(
-        "returning",
-        "share",
-        |test| test.returning,
-        "Other spells of 20 s that end near where they began: to and fro.",
-    ),
-    test("lingering", "share", |test| test.lingering, "Other spells of 20 s that stay within a circle of 0.6 m."),
-    test("idle", "share", TestFigures::idle, "Spells spinning, standing, circling, returning or lingering."),
+    spells("spinning", |test| test.spinning, "Spells of 20 s with a full turn on a radius below 0.3 m."),
+    spells("standing", |test| test.standing, "Spells of 20 s with less than 0.2 m of path."),
+    spells("circling", |test| test.circling, "Spells of 20 s that went round in a wider circle."),
+    spells("returning", |test| test.returning, "Other spells of 20 s that end near where they began: to and fro."),
+    spells("lingering", |test| test.lingering, "Other spells of 20 s that stay within a circle of 0.6 m."),
+    spells("idle", TestFigures::idle, "Spells spinning, standing, circling, returning or lingering."),
     route("backwards", "share", |test| test.backwards, "Spells of 20 s with backward progress along the route."),
     asked(
         "gap_m",

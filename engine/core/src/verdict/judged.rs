@@ -23,10 +23,14 @@ pub enum Because {
     Fails,
     /// A robot that knows nothing meets all conditions too.
     UntrainedToo,
-    /// A robot that does not look meets all conditions too.
+    /// A robot that does not look meets all conditions too, or the one that was learned does not look.
     BlindToo,
     /// The conditions tell nothing but rewards, which are the script's own word.
     RewardOnly,
+    /// Fewer than five attempts, of which a share is asked for.
+    TooFew,
+    /// A condition reads what the test could not measure: shares of spells of 20 s where no attempt lasts so long.
+    NotMeasured,
     /// The test, or that of a robot that knows nothing, was broken off.
     BrokenOff,
     /// The script names no failure, no goal and no success.

@@ -8,7 +8,7 @@ use super::base_lines::BaseLines;
 use super::default::{Endable, default_conditions};
 use super::figures::TestFigures;
 use super::judged::{Because, ConditionVerdict, FigureVerdict, SuccessVerdict};
-use super::term::{SideBySide, Subject, Term};
+use super::term::{FigureUse, SideBySide, Subject, Term};
 use super::window::{WINDOW_STEPS, WindowCounts};
 use crate::outcome::Endings;
 use crate::settings::RunSettings;
@@ -19,6 +19,8 @@ const GOOD_WINDOWS: usize = 4;
 const FEW_FAILURES: u64 = 1;
 /// Where failures and goals can happen: so many times as many goals as failures, over the good windows.
 const GOALS_PER_FAILURE: u64 = 4;
+/// A share of fewer attempts is chance.
+const FEWEST_ATTEMPTS: u64 = 5;
 /// Where only goals can happen: this share of the attempts, over the good windows.
 const MOST_GOALS: f64 = 0.8;
 
@@ -56,6 +58,8 @@ impl SuccessCondition {
 pub struct Success {
     conditions: Vec<SuccessCondition>,
     endable: Endable,
+    /// Whether the robot's state tells anything of what it senses.
+    looks: bool,
     /// Steps of the whole test.
     steps: u64,
     /// How long they take, seconds of the robot.
@@ -67,7 +71,12 @@ impl Success {
     pub(crate) fn new(own: &[SuccessCondition], endable: Endable, has_route: bool, run: &RunSettings) -> Self {
         let (steps, seconds) = (run.test_steps, run.test_steps as f64 * run.period_s);
         let conditions = if own.is_empty() { default_conditions(endable, has_route, seconds) } else { own.to_vec() };
-        Self { conditions, endable, steps, seconds }
+        Self { conditions, endable, looks: true, steps, seconds }
+    }
+
+    /// For a robot whose state tells nothing of what it senses.
+    pub(crate) fn of_a_blind_robot(self) -> Self {
+        Self { looks: false, ..self }
     }
 
     /// All of them must hold; none if a script says nothing by which success could be told.
@@ -102,13 +111,17 @@ impl Success {
             Because::BrokenOff
         } else if self.conditions.iter().all(SuccessCondition::reads_only_rewards) {
             Because::RewardOnly
+        } else if !holds && self.fails_unmeasured(own) {
+            Because::NotMeasured
         } else if !holds {
             Because::Fails
+        } else if self.counts_too_few(test) {
+            Because::TooFew
         } else if conditions.iter().all(|condition| condition.untrained) {
             Because::UntrainedToo
         } else if self.tells_only_rewards(test, untrained) {
             Because::RewardOnly
-        } else if blind.is_some_and(|blind| self.is_met_by(blind, untrained)) {
+        } else if !self.looks || blind.is_some_and(|blind| self.is_met_by(blind, untrained)) {
             Because::BlindToo
         } else {
             Because::Holds
@@ -120,9 +133,25 @@ impl Success {
             | Because::BlindToo
             | Because::RewardOnly
             | Because::BrokenOff
+            | Because::TooFew
+            | Because::NotMeasured
             | Because::NothingToTellBy => None,
         };
         SuccessVerdict { success, why, conditions }
+    }
+
+    /// Whether every condition that does not hold reads a figure that the test does not have, such as shares of spells of 20 s
+    /// where no attempt lasts so long.
+    fn fails_unmeasured(&self, own: SideBySide<'_>) -> bool {
+        let failing = self.conditions.iter().filter(|condition| !condition.term.holds_in(own));
+        failing.into_iter().all(|condition| condition.term.figures().iter().any(|asked| asked.is_unmeasured(own)))
+    }
+
+    /// Whether a share of attempts is asked for, and there are too few of them to have one.
+    fn counts_too_few(&self, test: &TestFigures) -> bool {
+        let of_attempts = |asked: &FigureUse| asked.subject == Subject::Test && asked.figure.name == "goal_rate";
+        let asks = self.conditions.iter().any(|condition| condition.term.figures().iter().any(of_attempts));
+        asks && test.attempts() + test.hops < FEWEST_ATTEMPTS
     }
 
     /// Whether some policy's test meets all conditions.
@@ -148,7 +177,7 @@ impl Success {
         for asked in condition.term.figures() {
             let name = asked.of.written(asked.figure, own.test);
             if figures.iter().all(|known| known.name != name) {
-                let asked = super::term::FigureUse { subject: Subject::Test, ..asked };
+                let asked = FigureUse { subject: Subject::Test, ..asked };
                 figures.push(FigureVerdict { name, value: asked.read(own), untrained: asked.read(chance) });
             }
         }
@@ -180,9 +209,7 @@ impl Success {
                 Endable { failure: true, goal: true, .. } => {
                     few && ended.goals > 0 && ended.goals >= GOALS_PER_FAILURE * ended.failures
                 }
-                Endable { failure: false, goal: true, .. } => {
-                    ended.goals > 0 && ended.goals as f64 >= MOST_GOALS * ended.attempts() as f64
-                }
+                Endable { failure: false, goal: true, .. } => ended.goals > 0 && ended.goal_rate() >= MOST_GOALS,
                 Endable { failure: false, goal: false, .. } => false,
             }
         };

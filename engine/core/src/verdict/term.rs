@@ -134,6 +134,11 @@ impl Term {
 }
 
 impl FigureUse {
+    /// Whether a test cannot have it, whatever the robot does.
+    pub(super) fn is_unmeasured(&self, measured: SideBySide<'_>) -> bool {
+        matches!(self.figure.source, Source::Spells(_)) && self.read(measured).is_none()
+    }
+
     /// Its value in a test.
     pub(crate) fn read(&self, measured: SideBySide<'_>) -> Option<f64> {
         let test = match self.subject {
@@ -143,6 +148,7 @@ impl FigureUse {
         match self.figure.source {
             Source::Test(get) => Some(get(test)),
             Source::Route(get) => get(test),
+            Source::Spells(get) => (!test.no_spells).then(|| get(test)),
             Source::Goal(get) => Some(get(test).unwrap_or(measured.seconds)),
             Source::Rule(get) => test.rules.get(self.of.number()).map(|rule| get(test, rule)),
             Source::Stage(get) => test.stage_rates.get(self.of.number()).map(get),

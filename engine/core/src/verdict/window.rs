@@ -39,7 +39,6 @@ impl WindowCounts<'_> {
     }
 
     pub(super) fn goal_rate(&self) -> f64 {
-        let Endings { goals, .. } = self.window.endings;
-        goals as f64 / self.window.endings.attempts().max(1) as f64
+        self.window.endings.goal_rate()
     }
 }

@@ -134,6 +134,8 @@ pub(super) fn print_many(console: &mut Console, spread: &Spread) -> Printed {
     let untold = [
         (Because::UntrainedToo, "a robot that knows nothing meets every condition too"),
         (Because::BlindToo, "a robot that does not look meets every condition too"),
+        (Because::TooFew, "fewer than five attempts ended in the test"),
+        (Because::NotMeasured, "no attempt lasts 20 s, so that idling cannot be told"),
         (Because::RewardOnly, "nothing but the reward tells success, which is the script's own word"),
         (Because::BrokenOff, "the test was broken off: they tell nothing"),
     ];
@@ -214,12 +216,15 @@ pub(crate) fn print_figures(console: &mut Console, plan: &Plan, test: &TestFigur
         console.line(&format!("           guards took actions away in {forbidden:.1} of 1000 steps"))?;
     }
     if test.goals + test.restarts > 0 || plan.behaviour.has_goals() {
-        let restarts =
+        let mut restarts =
             if test.restarts > 0 { format!("; {}", counted(test.restarts, "restart")) } else { String::new() };
+        if test.hops > 0 {
+            restarts += &format!("; {} broken off after run.stay_steps", test.hops);
+        }
         console.line(&format!(
             "goals:     {} of {} ({:.0} %, untrained {:.0} %){restarts}",
             test.goals,
-            counted(test.attempts(), "attempt"),
+            counted(test.attempts() + test.hops, "attempt"),
             100.0 * test.goal_rate,
             100.0 * untrained.goal_rate
         ))?;
