@@ -117,3 +117,69 @@ fn a_condition_that_always_holds_does_not_make_a_reward_a_success() {
         assert!(runs.iter().all(|run| run.verdict.why != Because::Holds), "{script}");
     }
 }
+
+#[test]
+fn a_crash_called_a_goal_is_none_however_long_the_attempts_are() {
+    let script =
+        "run(#{ period_s: 0.1 }); rule \"rammed\" when robot.contact && time.since_recovery > 60 => 1 then goal;";
+    let runs = assert_none(script, Some(1), 4000, 2);
+    for run in runs {
+        assert!(run.test.goals >= 5 && run.test.goal_crashes == run.test.goals, "{:?}", run.test);
+        assert!(run.test.per_1000(run.test.contacts) <= 20.0, "{:?}", run.test);
+        let touches = run.verdict.conditions.iter().find(|condition| condition.name == "touches little").unwrap();
+        assert!(!touches.holds, "{touches:?}");
+    }
+}
+
+#[test]
+fn attempts_that_are_broken_off_before_their_goal_count_as_attempts() {
+    // Of 1,000 steps at 0.4 s each attempt gets 20, and the goal takes 26.
+    let script = "run(#{ period_s: 0.4, stay_steps: 20 }); randomise(#{ \"start.yaw_deg\": [-5, 5] });
+                  rule \"there\" when time.attempt_s > 10.0 => 1 then goal;";
+    let run = &runs(script, Some(1), 1000, 1)[0];
+    assert_eq!((run.test.hops, run.test.goals, run.test.goal_rate), (50, 0, 0.0));
+    assert_eq!(run.verdict.why, Because::Fails);
+    // 30 steps are enough for it.
+    let run = &runs(&script.replace("stay_steps: 20", "stay_steps: 30"), Some(1), 1000, 1)[0];
+    assert_eq!((run.test.hops, run.test.goal_rate), (0, 1.0));
+}
+
+#[test]
+fn a_share_of_one_attempt_tells_nothing() {
+    let script = "rule \"there\" when time.attempt_s > 10.0 => 1 then goal;
+                  success \"goals\" when test.goal_rate > 0.9 && test.distance_m != untrained.distance_m;";
+    assert_eq!(runs(script, Some(1), 60, 1)[0].verdict.why, Because::TooFew);
+}
+
+#[test]
+fn idling_cannot_be_told_of_attempts_shorter_than_its_spells() {
+    let script = "run(#{ period_s: 0.1, stay_steps: 150 }); randomise(#{ \"start.yaw_deg\": [-5, 5] });
+                  rule \"hit\" when robot.contact => -1 then fail;
+                  success \"gets along\" when test.idle <= 0.5;";
+    let run = &runs(script, Some(1), 600, 1)[0];
+    assert!(run.test.no_spells);
+    assert_eq!(run.verdict.why, Because::NotMeasured);
+    assert_eq!(run.verdict.conditions[0].figures[0].value, None);
+    let run = &runs(&script.replace("150", "250"), Some(1), 600, 1)[0];
+    assert!(!run.test.no_spells && run.verdict.why != Because::NotMeasured);
+}
+
+#[test]
+fn what_a_robot_learned_that_looks_at_nothing_is_no_success() {
+    let state = |of| {
+        format!("state(bins({of}, [0.5, 1.0]));\n{HIT}success \"moves\" when test.mean_speed != untrained.mean_speed;")
+    };
+    assert_eq!(runs(&state("time.attempt_s"), Some(400), 400, 1)[0].verdict.why, Because::BlindToo);
+    assert_eq!(runs(&state("action.angular"), Some(400), 400, 1)[0].verdict.why, Because::BlindToo);
+    assert_ne!(runs(&state("laser.front"), Some(400), 400, 1)[0].verdict.why, Because::BlindToo);
+}
+
+#[test]
+fn who_is_paid_for_contacts_must_not_live_by_them() {
+    let hugs = "rule \"bumps\" when robot.contact && !previous.robot.contact => 1;
+                rule \"lost\" when time.since_recovery > 300 => -1 then fail;";
+    let run = &runs(hugs, Some(1), 1000, 1)[0];
+    assert!(run.verdict.conditions.iter().any(|condition| condition.name == "touches little"));
+    let run = &runs(HIT, Some(1), 400, 1)[0];
+    assert!(run.verdict.conditions.iter().all(|condition| condition.name != "touches little"));
+}
