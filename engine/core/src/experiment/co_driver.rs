@@ -155,7 +155,9 @@ impl CoDriver {
     fn begin(&mut self, observation: &Observation) -> Result<()> {
         (self.done, self.steps, self.last) = (0, 0, None);
         self.eyes.forget();
-        self.eyes.moved(&moved(observation, self.period_s, true))?;
+        if self.eyes.keep() {
+            self.eyes.moved(&moved(observation, self.period_s, true))?;
+        }
         self.eyes.look(observation)?;
         self.rest(observation)
     }

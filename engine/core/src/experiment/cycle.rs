@@ -28,6 +28,8 @@ pub struct Cycle<R> {
     robot: R,
     /// The script's own first; the judge looks through these.
     eyes: Vec<Eyes>,
+    /// Whether anything of the script itself reads what the camera sees.
+    looks: bool,
     states: Vec<usize>,
     judge: Judge,
     actions: Vec<Twist>,
@@ -88,16 +90,21 @@ impl<R: Robot> Cycle<R> {
     }
 
     /// As [`Cycle::with_eyes`], before those who judge along.
-    fn before(plan: &Plan, robot: R, own: Eyes, mut others: Vec<Eyes>, witnesses: Vec<Witness>) -> Result<Self> {
+    fn before(plan: &Plan, robot: R, mut own: Eyes, mut others: Vec<Eyes>, witnesses: Vec<Witness>) -> Result<Self> {
         let settings = &plan.settings;
         let judge = plan.judge()?;
-        others.insert(0, own);
         let co_drivers = CoDrivers::new(plan)?;
+        let looks = !own.are_closed();
+        if witnesses.iter().any(Witness::reads_views) {
+            own.open();
+        }
+        others.insert(0, own);
         let likes: Vec<Format> = others.iter().flat_map(Eyes::likes).chain(co_drivers.like()).collect();
         let mut cycle = Self {
             robot,
             states: vec![0; others.len()],
             eyes: others,
+            looks,
             judge,
             actions: plan.motions(),
             observation: asking_for(settings, &likes),
@@ -142,7 +149,7 @@ impl<R: Robot> Cycle<R> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn ask_for(&mut self, format: Format) {
-        let Image { width_px, height_px, .. } = *self.observation.sight();
+        let (width_px, height_px) = self.eyes[0].size_px();
         self.observation.image = Image::of(format, width_px, height_px);
     }
 
@@ -153,6 +160,12 @@ impl<R: Robot> Cycle<R> {
     pub(super) fn swap_judge(&mut self, plan: &Plan) -> Result<()> {
         self.judge = plan.judge()?;
         self.look();
+        if self.judge.reads_views() && !std::mem::replace(&mut self.looks, true) {
+            if self.eyes[0].open() {
+                self.observation.ask_anew(&asking_for(&plan.settings, &self.likes()));
+            }
+            self.perceive(true)?;
+        }
         self.has_goals = plan.behaviour.has_goals();
         (self.potential, self.leave) = (0.0, Leave::default());
         self.judge.go_to(self.robot.world_index());
@@ -166,6 +179,11 @@ impl<R: Robot> Cycle<R> {
             self.co_drivers.calibrate(&self.observation)?;
         }
         self.judge.calibrate()
+    }
+
+    /// What all filters read.
+    fn likes(&self) -> Vec<Format> {
+        self.eyes.iter().flat_map(Eyes::likes).chain(self.co_drivers.like()).collect()
     }
 
     fn reads_ground(&self) -> bool {
@@ -370,11 +388,15 @@ impl<R: Robot> Cycle<R> {
     }
 }
 
-/// An observation of the images that filters like: grey if that is all that they look at, depth if one does.
+/// An observation of the images that filters like: grey if that is all that they look at, depth if one does, no image if
+/// nobody looks.
 fn asking_for(settings: &Settings, likes: &[Format]) -> Observation {
+    let beams = settings.laser.beams as usize;
+    if likes.is_empty() {
+        return Observation::asking_for(Format::Grey, 0, 0, beams);
+    }
     let (width_px, height_px) = (settings.camera.width_px as usize, settings.camera.height_px as usize);
-    let (beams, mut in_light) =
-        (settings.laser.beams as usize, likes.iter().filter(|format| **format != Format::Depth));
+    let mut in_light = likes.iter().filter(|format| **format != Format::Depth);
     let (depth, alone) = (likes.contains(&Format::Depth), in_light.clone().next().is_none());
     let format = if in_light.all(|format| *format == Format::Grey) { Format::Grey } else { Format::Rgb };
     let observation = Observation::asking_for(format, width_px, height_px, beams);

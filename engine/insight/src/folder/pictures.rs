@@ -72,6 +72,10 @@ pub(super) fn draw_paths(folder: &Path, plan: &Plan, results: &[SeedResult]) -> 
 }
 
 pub(super) fn draw_frame(folder: &Path, plan: &Plan, tested: &TestRun) -> Result<()> {
+    if tested.snapshot.image.pixels.is_empty() {
+        // A robot that is not asked for an image, and has no other.
+        return Ok(());
+    }
     let title = format!("{} in {}: what the robot sees", plan.behaviour.name(), plan.worlds.title());
     snapshot_frame(&title, &tested.snapshot)?.write(folder, "frame")
 }

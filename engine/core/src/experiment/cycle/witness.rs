@@ -38,6 +38,10 @@ impl Witness {
         self.judge.looks()
     }
 
+    pub(super) fn reads_views(&self) -> bool {
+        self.judge.reads_views()
+    }
+
     pub(super) fn reads_ground(&self) -> bool {
         self.judge.reads_ground()
     }
