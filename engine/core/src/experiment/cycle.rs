@@ -19,6 +19,7 @@ use super::telling::{LaserTold, StepTold, tell};
 use super::{Eyes, Hand, Plan, Step};
 use filter_api::Format;
 use witness::Witness;
+pub(super) use witness::Witnessed;
 
 /// In a script without goals, an attempt of so many steps went well.
 const LONG_STEPS: u64 = 400;
@@ -159,6 +160,7 @@ impl<R: Robot> Cycle<R> {
     /// If the script fails.
     pub(super) fn swap_judge(&mut self, plan: &Plan) -> Result<()> {
         self.judge = plan.judge()?;
+        self.co_drivers.swap_uses(plan);
         self.look();
         if self.judge.reads_views() && !std::mem::replace(&mut self.looks, true) {
             if self.eyes[0].open() {
@@ -273,7 +275,7 @@ impl<R: Robot> Cycle<R> {
     /// # Errors
     /// If a sensor, a filter or the script fails; the message names the step.
     pub fn step(&mut self, action: usize) -> Result<Step> {
-        let (index, state, potential) = (self.steps, self.state(), self.potential);
+        let (index, state, potential, driver) = (self.steps, self.state(), self.potential, self.co_drivers.by());
         self.robot.act(self.actions[action])?;
         self.since_recovery += 1;
         self.perceive(false)?;
@@ -315,7 +317,8 @@ impl<R: Robot> Cycle<R> {
             next_allowed: self.leave.allowed,
             hop,
         };
-        self.ask_witnesses(&step).map_err(|error| at_step(error, index))?;
+        // Those who judge along do so where whoever chooses hands over to the policies that are used.
+        self.ask_witnesses(&Step { driver, ..step }).map_err(|error| at_step(error, index))?;
         Ok(step)
     }
 
