@@ -1,5 +1,6 @@
 //! One step of the robot, the order of which is the order of the folders: act, sense, filter, state, judge.
 
+mod asked;
 mod shown;
 mod witness;
 
@@ -9,14 +10,14 @@ use crate::geometry::Twist;
 use crate::judge::{Judge, Judgement, Leave, NO_ACTION};
 use crate::outcome::Ending;
 use crate::robot::{Ended, Robot};
-use crate::sensors::observation::{Image, Observation};
-use crate::settings::Settings;
+use crate::sensors::observation::Observation;
 use crate::state::StateMap;
 
 use super::co_driver::CoDrivers;
 use super::eyes::moved;
 use super::telling::{LaserTold, StepTold, tell};
 use super::{Eyes, Hand, Plan, Step};
+use asked::asking_for;
 use filter_api::Format;
 use witness::Witness;
 pub(super) use witness::Witnessed;
@@ -130,30 +131,6 @@ impl<R: Robot> Cycle<R> {
         Ok(cycle)
     }
 
-    /// From the next observation on the image is asked for in another format: in colour, for whoever wants to look at it
-    /// though the filters look at brightness alone. States and rewards stay the same.
-    ///
-    /// ```
-    /// use engine::experiment::{Cycle, Overrides, Phase, Plan};
-    /// use engine::script::Behaviour;
-    ///
-    /// # let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scripts/wall.rhai");
-    /// # /*
-    /// let script = "scripts/wall.rhai";
-    /// # */
-    /// let plan = Plan::new(Behaviour::load(script.as_ref())?.into(), &Overrides::default())?;
-    /// let cycle = || Cycle::new(&plan, Phase::Learning.robot(&plan, 1)?);
-    /// let (mut grey, mut colour) = (cycle()?, cycle()?);
-    /// colour.ask_for(filter_api::Format::Rgb);
-    /// assert_eq!(grey.step(3)?, colour.step(3)?);
-    /// assert_eq!(grey.observation().image.pixels.len() * 3, colour.observation().image.pixels.len());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn ask_for(&mut self, format: Format) {
-        let (width_px, height_px) = self.eyes[0].size_px();
-        self.observation.image = Image::of(format, width_px, height_px);
-    }
-
     /// From the next step on another script judges; it is calibrated on the present observation, as at the start of a run.
     ///
     /// # Errors
@@ -181,11 +158,6 @@ impl<R: Robot> Cycle<R> {
             self.co_drivers.calibrate(&self.observation)?;
         }
         self.judge.calibrate()
-    }
-
-    /// What all filters read.
-    fn likes(&self) -> Vec<Format> {
-        self.eyes.iter().flat_map(Eyes::likes).chain(self.co_drivers.like()).collect()
     }
 
     fn reads_ground(&self) -> bool {
@@ -389,21 +361,6 @@ impl<R: Robot> Cycle<R> {
         let twist = self.actions.get(action).copied().unwrap_or_default();
         StepTold { action, twist, step, since_recovery: self.since_recovery, state: self.states[0] }
     }
-}
-
-/// An observation of the images that filters like: grey if that is all that they look at, depth if one does, no image if
-/// nobody looks.
-fn asking_for(settings: &Settings, likes: &[Format]) -> Observation {
-    let beams = settings.laser.beams as usize;
-    if likes.is_empty() {
-        return Observation::asking_for(Format::Grey, 0, 0, beams);
-    }
-    let (width_px, height_px) = (settings.camera.width_px as usize, settings.camera.height_px as usize);
-    let mut in_light = likes.iter().filter(|format| **format != Format::Depth);
-    let (depth, alone) = (likes.contains(&Format::Depth), in_light.clone().next().is_none());
-    let format = if in_light.all(|format| *format == Format::Grey) { Format::Grey } else { Format::Rgb };
-    let observation = Observation::asking_for(format, width_px, height_px, beams);
-    if depth { observation.with_depth(alone) } else { observation }
 }
 
 fn at_step(mut error: Box<Diagnostic>, index: u64) -> Box<Diagnostic> {

@@ -48,6 +48,7 @@ pub(super) struct Recorder {
     /// Steps that it still takes in the home world, and in each of the others that the robot has come to.
     left: u64,
     further_left: Vec<u64>,
+    /// Steps in each of the others; 0 for a trail of the home world alone.
     most: u64,
 }
 
@@ -60,8 +61,13 @@ impl Recorder {
             trail: Trail { legs: vec![leg], movers: movers(robot), ..Trail::default() },
             left: steps,
             further_left: Vec::new(),
-            most: steps,
+            most: 0,
         }
+    }
+
+    /// This recorder, but it takes as many steps in every other world too.
+    pub(super) fn in_every_world(self) -> Self {
+        Self { most: self.left, ..self }
     }
 
     /// The trail in the world where the robot is, and how many steps it still takes; nothing if it takes no more.
@@ -69,6 +75,8 @@ impl Recorder {
         let world = robot.world_index();
         let (trail, left) = if world == 0 {
             (&mut self.trail, &mut self.left)
+        } else if self.most == 0 {
+            return None;
         } else {
             let further = &mut self.trail.further;
             let known = further.iter().position(|(number, _)| *number == world);
