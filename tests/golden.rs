@@ -90,8 +90,8 @@ fn now() -> Golden {
         .filter_map(|entry| Some(entry.unwrap().file_name().to_str()?.strip_suffix(".rhai")?.to_owned()))
         .collect();
     scripts.sort();
-    // What follow-and-avoid combines.
-    for script in ["avoid", "object"] {
+    // What follow-and-avoid combines, and what find-and-dock uses.
+    for script in ["avoid", "object", "dock"] {
         bench.engine(&["run", root().join(format!("scripts/{script}.rhai")).to_str().unwrap()]);
     }
     let shipped = scripts.iter().map(|script| (script.clone(), run(&bench, script, &[])));

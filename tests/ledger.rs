@@ -188,3 +188,40 @@ fn many_passes_stay_within_what_the_rewards_can_add_up_to() {
     assert!(values.clone().all(|value| (-100.0..=0.0).contains(value)));
     assert!(values.clone().any(|value| *value < -1.0));
 }
+
+#[test]
+fn a_script_that_reads_no_camera_is_driven_without_an_image_and_shows_one_where_it_is_asked_for() {
+    for (script, looks) in [("raceway", false), ("vacuum", false), ("wall", true)] {
+        let plan = plan(script, 400);
+        assert_eq!(plan.looks(), looks, "{script}");
+        let ledger = recorded(&plan, 5);
+        let mut playback = Playback::new(&plan, 5, Phase::Learning, &ledger).unwrap();
+        while playback.advance().unwrap().is_some() {
+            assert_eq!(playback.difference(), None, "{script}");
+        }
+        let seen = Snapshot::of(playback.cycle());
+        let drawn = playback.cycle().observation().image.pixels.len();
+        assert_eq!((drawn > 0, seen.views.len()), (looks, usize::from(looks)), "{script}");
+        // The picture is drawn for whoever looks on.
+        assert!(seen.image.pixels.len() == 160 * 120 * 3 && seen.image.pixels.iter().any(|level| *level > 0));
+        assert_eq!(ledger.records().any(|record| record.coverage > 0.0), looks, "{script}");
+    }
+}
+
+#[test]
+fn other_rules_that_read_a_view_open_the_eyes_of_a_recorded_run_without_changing_it() {
+    let written = |rule: &str| {
+        let text = format!(
+            "world(\"room\"); run(#{{ steps: 400, test_steps: 400 }}); state(bins(laser.front, [1.0]));
+             rule \"hit\" when laser.nearest < 0.3 => -1 then fail; {rule}"
+        );
+        let behaviour = Behaviour::parse("blind", SourceText::new(root().join("scripts/blind.rhai"), text)).unwrap();
+        Plan::new(Arc::new(behaviour), &Overrides::default()).unwrap()
+    };
+    let (plan, sees) = (written(""), written("rule \"sees\" when camera.seen => 0.5;"));
+    assert!(!plan.looks() && sees.looks());
+    let rescored = rescore(&plan, &sees, 1, &recorded(&plan, 1), 1).unwrap();
+    // In the room something with edges is nearly always in sight.
+    let added = rescored.reward_after - rescored.reward_before;
+    assert!(rescored.steps_changed > 200 && added == 0.5 * rescored.steps_changed as f64, "{rescored:?}");
+}

@@ -176,3 +176,20 @@ fn a_policy_that_uses_policies_itself() {
     bench.write("more.rhai", format!("{named}\nuse \"mine\" when robot.contact;\n{SCRIPT}"));
     assert_snapshot!(bench.failure(&["run", "more.rhai"]));
 }
+
+#[test]
+fn a_run_that_used_a_policy_can_be_rescored() {
+    let bench = bench("use \"slow\" when laser.front < 1.5;");
+    bench.engine(&["run", "mine.rhai"]);
+    let same = json(&bench.ok(&["rescore", "runs/mine/1", "mine.rhai", "--json"]));
+    assert_eq!((&same["steps_changed"], &same["other_hands"]), (&0.into(), &0.into()));
+    assert_eq!((&same["states_changed"], &same["reward_before"]), (&Value::Array(vec![]), &same["reward_after"]));
+    // Another condition: whoever drove drives on, and it is told how often that is not what the script says.
+    let other = format!("{NAMED}\nuse \"slow\" when laser.front < 0.3;\n{SCRIPT}");
+    bench.write("other.rhai", other);
+    let told = bench.ok(&["rescore", "runs/mine/1", "other.rhai"]);
+    assert!(told.contains("another policy would have driven, or none; the recorded one drove on"), "{told}");
+    // Without any use the steps of the other policy say nothing.
+    bench.write("none.rhai", SCRIPT);
+    assert!(bench.failure(&["rescore", "runs/mine/1", "none.rhai"]).contains("E-RESCORE"));
+}

@@ -4,7 +4,7 @@ use std::net::TcpStream;
 use serde_json::Value;
 
 use super::served::{Served, message};
-use crate::support::SCRIPT;
+use crate::support::{Bench, SCRIPT};
 
 /// The run of a save, learned and tested.
 fn done(events: &mut BufReader<TcpStream>, save: u64) -> Value {
@@ -122,4 +122,27 @@ fn what_changes_more_than_the_reward_goes_on_or_is_learned_from_nothing() {
     let own = format!("Origin: http://127.0.0.1:{}\r\nContent-Length: 0\r\n", served.port);
     assert_eq!(served.status("POST", "/relearn", &own), 202);
     assert!(done(&mut events, 4)["document"]["swaps"].as_array().unwrap().is_empty());
+}
+
+#[test]
+fn a_script_that_uses_a_policy_learns_on_while_the_policy_stays_the_same() {
+    let script = |limit: &str| {
+        format!(
+            "policy(\"old\", \"runs/old/1\");\nuse \"old\" when laser.front < 1.0;\n{}",
+            SCRIPT.replace("<= 0.25", limit)
+        )
+    };
+    let bench = Bench::new();
+    bench.write("old.rhai", SCRIPT);
+    bench.engine(&["run", "old.rhai"]);
+    bench.write("short.rhai", script("<= 0.25"));
+    let served = Served::of(bench, "short.rhai", &["--port", "0", "--keep", "--out", "kept"]);
+    let mut events = served.events();
+    done(&mut events, 1);
+    served.bench.write("short.rhai", script("<= 0.4"));
+    let second = done(&mut events, 2);
+    assert_eq!(second["document"]["swaps"][0]["step"], 800, "{}", second["text"]);
+    written(&served, 1600);
+    let told = served.bench.ok(&["replay", "kept/2", "--verify"]);
+    assert!(told.contains("1600 steps of learning"), "{told}");
 }

@@ -12,7 +12,7 @@ use super::findings;
 use super::session::MOST_LEDGER_BYTES;
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Ledger, Plan, RecordShape, in_parallel};
-use insight::store::{policy_files, with_policies};
+use insight::store::{policy_files, with_policies_or};
 
 /// Tests the combination with all seeds and shows it; its policies are watched from then on.
 pub(super) fn retest(desk: &Desk, plan: Plan, stop: &AtomicBool, files: &Mutex<Files>) -> Result<()> {
@@ -23,7 +23,7 @@ pub(super) fn retest(desk: &Desk, plan: Plan, stop: &AtomicBool, files: &Mutex<F
     }
     let started = Instant::now();
     files.lock().unwrap_or_else(PoisonError::into_inner).watch(policy_files(&plan))?;
-    let plan = with_policies(plan)?;
+    let plan = with_policies_or(plan, &*desk.settings.packed)?;
     let seeds = &desk.settings.seeds;
     let count = if seeds.len() == 1 { "one seed".to_owned() } else { format!("{} seeds", seeds.len()) };
     let steps = plan.settings.run.test_steps;

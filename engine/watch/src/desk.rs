@@ -1,6 +1,6 @@
 //! What all of a watch have at hand: what is watched, how it is learned, and the board on which it is shown.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -11,9 +11,13 @@ use engine::filter::Catalogue;
 use engine::learner::Carry;
 use engine::verdict::BaseLines;
 use insight::page::{Document, Moments};
+use insight::store::PolicyText;
 
 /// Called with every run that was learned and tested, its tests, and the seconds that both took.
 pub type Finished = Box<dyn Fn(&SavedRun, Vec<TestRun>, f64) -> Result<()> + Send>;
+
+/// Finds the policy of a pack by the path of its file or by its name; nothing if there is no such pack.
+pub type Packed = Box<dyn Fn(&Path) -> Result<Option<PolicyText>> + Send>;
 
 /// What is watched and how it is learned.
 pub struct WatchSettings {
@@ -31,6 +35,8 @@ pub struct WatchSettings {
     pub overrides: Overrides,
     /// Folders of filters.
     pub filter_folders: Vec<PathBuf>,
+    /// Where policies are found that lie in packs.
+    pub packed: Packed,
     /// Makes the catalogue of filters anew, since a filter may have been saved.
     pub filters: Box<dyn Fn() -> Result<Arc<Catalogue>> + Send>,
 }

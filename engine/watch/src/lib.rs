@@ -29,6 +29,6 @@ mod session;
 pub mod terminal;
 
 pub use board::{Board, SavedRun, Shown, ShownRun, WatchedSeed};
-pub use desk::{Finished, WatchSettings};
+pub use desk::{Finished, Packed, WatchSettings};
 pub use relearn::{Asker, Relearner};
 pub use server::{Address, listen};

@@ -15,7 +15,7 @@ use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Plan, WINDOW_STEPS, in_parallel};
 use engine::learner::Carry;
 use engine::script::ParamValues;
-use insight::store::{policy_files, with_policies};
+use insight::store::{policy_files, with_policies_or};
 
 /// A save is often several writes; so long it must be quiet.
 const QUIET: Duration = Duration::from_millis(15);
@@ -274,7 +274,7 @@ impl Relearner {
             return Ok(plan);
         }
         files.lock().unwrap_or_else(PoisonError::into_inner).watch(policy_files(&plan))?;
-        with_policies(plan)
+        with_policies_or(plan, &*self.desk.settings.packed)
     }
 
     /// Says what is being done, or what is wrong with the script that was saved while it is done.

@@ -46,6 +46,12 @@ impl CoDrivers {
         Ok(Self { drivers, policies: plan.behaviour.uses().map(|(_, policy)| policy).collect(), by: None })
     }
 
+    /// From now on the uses of another script are asked, of the same policies.
+    pub(super) fn swap_uses(&mut self, plan: &Plan) {
+        self.policies = plan.behaviour.uses().map(|(_, policy)| policy).collect();
+        self.by = None;
+    }
+
     pub(super) fn read_ground(&self) -> bool {
         self.drivers.iter().any(|driver| driver.judge.reads_ground())
     }
@@ -63,6 +69,11 @@ impl CoDrivers {
     /// Whether one of them is to drive.
     pub(super) fn drive(&self) -> bool {
         self.by.is_some()
+    }
+
+    /// The use by which one of them is to drive.
+    pub(super) fn by(&self) -> Option<usize> {
+        self.by
     }
 
     /// Takes note of the use that holds now: who takes over begins anew, who goes on looks at what came of `motion`, which
@@ -155,7 +166,9 @@ impl CoDriver {
     fn begin(&mut self, observation: &Observation) -> Result<()> {
         (self.done, self.steps, self.last) = (0, 0, None);
         self.eyes.forget();
-        self.eyes.moved(&moved(observation, self.period_s, true))?;
+        if self.eyes.keep() {
+            self.eyes.moved(&moved(observation, self.period_s, true))?;
+        }
         self.eyes.look(observation)?;
         self.rest(observation)
     }

@@ -1,5 +1,6 @@
 //! One step of the robot, the order of which is the order of the folders: act, sense, filter, state, judge.
 
+mod asked;
 mod shown;
 mod witness;
 
@@ -9,16 +10,17 @@ use crate::geometry::Twist;
 use crate::judge::{Judge, Judgement, Leave, NO_ACTION};
 use crate::outcome::Ending;
 use crate::robot::{Ended, Robot};
-use crate::sensors::observation::{Image, Observation};
-use crate::settings::Settings;
+use crate::sensors::observation::Observation;
 use crate::state::StateMap;
 
 use super::co_driver::CoDrivers;
 use super::eyes::moved;
 use super::telling::{LaserTold, StepTold, tell};
 use super::{Eyes, Hand, Plan, Step};
+use asked::asking_for;
 use filter_api::Format;
 use witness::Witness;
+pub(super) use witness::Witnessed;
 
 /// In a script without goals, an attempt of so many steps went well.
 const LONG_STEPS: u64 = 400;
@@ -28,6 +30,8 @@ pub struct Cycle<R> {
     robot: R,
     /// The script's own first; the judge looks through these.
     eyes: Vec<Eyes>,
+    /// Whether anything of the script itself reads what the camera sees.
+    looks: bool,
     states: Vec<usize>,
     judge: Judge,
     actions: Vec<Twist>,
@@ -88,16 +92,21 @@ impl<R: Robot> Cycle<R> {
     }
 
     /// As [`Cycle::with_eyes`], before those who judge along.
-    fn before(plan: &Plan, robot: R, own: Eyes, mut others: Vec<Eyes>, witnesses: Vec<Witness>) -> Result<Self> {
+    fn before(plan: &Plan, robot: R, mut own: Eyes, mut others: Vec<Eyes>, witnesses: Vec<Witness>) -> Result<Self> {
         let settings = &plan.settings;
         let judge = plan.judge()?;
-        others.insert(0, own);
         let co_drivers = CoDrivers::new(plan)?;
+        let looks = !own.are_closed();
+        if witnesses.iter().any(Witness::reads_views) {
+            own.open();
+        }
+        others.insert(0, own);
         let likes: Vec<Format> = others.iter().flat_map(Eyes::likes).chain(co_drivers.like()).collect();
         let mut cycle = Self {
             robot,
             states: vec![0; others.len()],
             eyes: others,
+            looks,
             judge,
             actions: plan.motions(),
             observation: asking_for(settings, &likes),
@@ -122,37 +131,20 @@ impl<R: Robot> Cycle<R> {
         Ok(cycle)
     }
 
-    /// From the next observation on the image is asked for in another format: in colour, for whoever wants to look at it
-    /// though the filters look at brightness alone. States and rewards stay the same.
-    ///
-    /// ```
-    /// use engine::experiment::{Cycle, Overrides, Phase, Plan};
-    /// use engine::script::Behaviour;
-    ///
-    /// # let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scripts/wall.rhai");
-    /// # /*
-    /// let script = "scripts/wall.rhai";
-    /// # */
-    /// let plan = Plan::new(Behaviour::load(script.as_ref())?.into(), &Overrides::default())?;
-    /// let cycle = || Cycle::new(&plan, Phase::Learning.robot(&plan, 1)?);
-    /// let (mut grey, mut colour) = (cycle()?, cycle()?);
-    /// colour.ask_for(filter_api::Format::Rgb);
-    /// assert_eq!(grey.step(3)?, colour.step(3)?);
-    /// assert_eq!(grey.observation().image.pixels.len() * 3, colour.observation().image.pixels.len());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn ask_for(&mut self, format: Format) {
-        let Image { width_px, height_px, .. } = *self.observation.sight();
-        self.observation.image = Image::of(format, width_px, height_px);
-    }
-
     /// From the next step on another script judges; it is calibrated on the present observation, as at the start of a run.
     ///
     /// # Errors
     /// If the script fails.
     pub(super) fn swap_judge(&mut self, plan: &Plan) -> Result<()> {
         self.judge = plan.judge()?;
+        self.co_drivers.swap_uses(plan);
         self.look();
+        if self.judge.reads_views() && !std::mem::replace(&mut self.looks, true) {
+            if self.eyes[0].open() {
+                self.observation.ask_anew(&asking_for(&plan.settings, &self.likes()));
+            }
+            self.perceive(true)?;
+        }
         self.has_goals = plan.behaviour.has_goals();
         (self.potential, self.leave) = (0.0, Leave::default());
         self.judge.go_to(self.robot.world_index());
@@ -255,7 +247,7 @@ impl<R: Robot> Cycle<R> {
     /// # Errors
     /// If a sensor, a filter or the script fails; the message names the step.
     pub fn step(&mut self, action: usize) -> Result<Step> {
-        let (index, state, potential) = (self.steps, self.state(), self.potential);
+        let (index, state, potential, driver) = (self.steps, self.state(), self.potential, self.co_drivers.by());
         self.robot.act(self.actions[action])?;
         self.since_recovery += 1;
         self.perceive(false)?;
@@ -297,7 +289,8 @@ impl<R: Robot> Cycle<R> {
             next_allowed: self.leave.allowed,
             hop,
         };
-        self.ask_witnesses(&step).map_err(|error| at_step(error, index))?;
+        // Those who judge along do so where whoever chooses hands over to the policies that are used.
+        self.ask_witnesses(&Step { driver, ..step }).map_err(|error| at_step(error, index))?;
         Ok(step)
     }
 
@@ -368,17 +361,6 @@ impl<R: Robot> Cycle<R> {
         let twist = self.actions.get(action).copied().unwrap_or_default();
         StepTold { action, twist, step, since_recovery: self.since_recovery, state: self.states[0] }
     }
-}
-
-/// An observation of the images that filters like: grey if that is all that they look at, depth if one does.
-fn asking_for(settings: &Settings, likes: &[Format]) -> Observation {
-    let (width_px, height_px) = (settings.camera.width_px as usize, settings.camera.height_px as usize);
-    let (beams, mut in_light) =
-        (settings.laser.beams as usize, likes.iter().filter(|format| **format != Format::Depth));
-    let (depth, alone) = (likes.contains(&Format::Depth), in_light.clone().next().is_none());
-    let format = if in_light.all(|format| *format == Format::Grey) { Format::Grey } else { Format::Rgb };
-    let observation = Observation::asking_for(format, width_px, height_px, beams);
-    if depth { observation.with_depth(alone) } else { observation }
 }
 
 fn at_step(mut error: Box<Diagnostic>, index: u64) -> Box<Diagnostic> {

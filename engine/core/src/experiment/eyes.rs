@@ -55,6 +55,8 @@ pub struct Eyes {
     height_px: usize,
     /// Whether a filter keeps something.
     keep: bool,
+    /// Nobody reads what they would see, so that they look at nothing.
+    closed: bool,
 }
 
 /// How the robot moved in a step of so many seconds, as its wheels say; or it was put elsewhere.
@@ -89,13 +91,36 @@ impl Eyes {
             width_px,
             height_px,
             keep,
+            closed: false,
         }
+    }
+
+    /// These eyes, but they look at nothing: each view is as if its mask were empty.
+    #[must_use]
+    pub(super) fn closed(self) -> Self {
+        Self { closed: true, ..self }
+    }
+
+    /// Opens them. Gives whether they were closed.
+    pub(super) fn open(&mut self) -> bool {
+        std::mem::take(&mut self.closed)
+    }
+
+    /// Whether they look at nothing.
+    pub(super) fn are_closed(&self) -> bool {
+        self.closed
+    }
+
+    /// The size of the images that they look at: pixels in a row, and rows.
+    pub(super) fn size_px(&self) -> (usize, usize) {
+        (self.width_px, self.height_px)
     }
 
     /// These eyes with another map from what is seen to states.
     #[must_use]
     pub(super) fn with_map(self, map: Box<dyn StateMap>) -> Self {
-        Self { map, ..self }
+        // What the map reads, it alone knows.
+        Self { map, closed: false, ..self }
     }
 
     /// From now on these things are looked for in the masks.
@@ -106,9 +131,9 @@ impl Eyes {
         }
     }
 
-    /// What the chains read.
+    /// What the chains read; nothing if they look at nothing.
     pub(super) fn likes(&self) -> impl Iterator<Item = Format> {
-        self.chains.iter().map(Chain::likes)
+        self.chains.iter().filter(|_| !self.closed).map(Chain::likes)
     }
 
     /// Looks at what the robot observed.
@@ -116,6 +141,9 @@ impl Eyes {
     /// # Errors
     /// If a filter fails.
     pub(super) fn look(&mut self, observation: &Observation) -> Result<()> {
+        if self.closed {
+            return Ok(());
+        }
         for (index, grid) in self.grids.iter_mut().enumerate() {
             let (before, rest) = self.chains.split_at_mut(index);
             let Some(chain) = rest.first_mut() else { break };
@@ -131,7 +159,7 @@ impl Eyes {
 
     /// Whether a filter keeps something from image to image.
     pub(super) fn keep(&self) -> bool {
-        self.keep
+        self.keep && !self.closed
     }
 
     /// Tells the filters that keep something how the robot moved since the last image.
@@ -233,17 +261,17 @@ impl Eyes {
         })
     }
 
-    /// What each filter of each view made of the image that was looked at last.
+    /// What each filter of each view made of the image that was looked at last; nothing of eyes that look at nothing.
     pub(super) fn stages(&self) -> impl Iterator<Item = ViewStage<'_>> {
-        self.chains.iter().zip(&self.names).flat_map(|(chain, view)| {
+        self.chains.iter().filter(|_| !self.closed).zip(&self.names).flat_map(|(chain, view)| {
             let stage = |(filter, pixels)| ViewStage { view: view.as_deref(), filter, pixels };
             chain.stages().map(stage)
         })
     }
 
-    /// What each view made of the image that was looked at last.
+    /// What each view made of the image that was looked at last; nothing of eyes that look at nothing.
     pub(super) fn views(&self) -> impl Iterator<Item = SeenView> {
-        let views = self.names.iter().zip(&self.chains).zip(&self.grids);
+        let views = self.names.iter().filter(|_| !self.closed).zip(&self.chains).zip(&self.grids);
         views.map(|((name, chain), grid)| SeenView::of(name.as_deref(), chain.mask(), grid))
     }
 

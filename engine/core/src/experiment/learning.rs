@@ -264,6 +264,7 @@ impl<R: Robot, L: Learner> Learning<R, L> {
             return Ok(());
         }
         let settings = &plan.settings;
+        self.used.settle(&mut Learns(&mut self.learner));
         self.learner.swap(&settings.learner, plan.mirror(self.cycle.state_map())?, carry);
         if carry == Carry::Rescore {
             self.learner.rescore(said);

@@ -98,13 +98,23 @@ impl Plan {
         };
         let same_world = texts(other) == texts(self);
         let fixed = first_fixed_difference(&other.settings, &self.settings).map(|(what, _)| what);
-        let uses = self.behaviour.hands_over() || other.behaviour.hands_over();
         let remembers = |plan: &Self| plan.settings.learner.kind == LearnerKind::Memory;
         fixed
-            .or_else(|| uses.then(|| "the policies that it uses".to_owned()))
+            .or_else(|| (!self.uses_the_policies_of(other)).then(|| "the policies that it uses".to_owned()))
             .or_else(|| (remembers(other) != remembers(self)).then(|| "the way of learning".to_owned()))
             .or_else(|| (!same_world).then(|| "the world".to_owned()))
             .or_else(|| (digests(other) != digests(self)).then(|| "the filters".to_owned()))
+    }
+}
+
+impl Plan {
+    /// Whether the same policies may drive in both, asked in the same order; when they do may differ.
+    fn uses_the_policies_of(&self, other: &Self) -> bool {
+        let uses = |plan: &Self| plan.behaviour.uses().map(|(_, policy)| policy).collect::<Vec<_>>();
+        let texts = |plan: &Self| -> Vec<Arc<str>> {
+            plan.used.iter().flat_map(|used| &used.texts).map(|source| source.text.clone()).collect()
+        };
+        uses(self) == uses(other) && texts(self) == texts(other)
     }
 }
 

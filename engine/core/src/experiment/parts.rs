@@ -37,7 +37,7 @@ impl Parts<'_> {
         if grid && !["actions", "learner", "state", "stages"].iter().any(|call| unread.any_of(call)) {
             mistakes.take(self.state_map().and_then(|map| self.mirror(&*map)));
         }
-        chain && grid && !unread.any_of("camera")
+        chain && grid && !unread.any_of("camera") && self.looks()
     }
 
     /// The fresh filter chain of a view.
@@ -141,7 +141,13 @@ impl Parts<'_> {
     pub(super) fn eyes(&self) -> Result<Eyes> {
         let chains = self.settings.views().map(|view| self.chain(view)).collect::<Result<Vec<_>>>()?;
         let grids = self.settings.views().map(|view| self.grid(view)).collect::<Result<Vec<_>>>()?;
-        Ok(Eyes::new(chains, grids, self.state_map()?, self.settings))
+        let eyes = Eyes::new(chains, grids, self.state_map()?, self.settings);
+        Ok(if self.looks() { eyes } else { eyes.closed() })
+    }
+
+    /// Whether anything reads what the camera sees: the states, or the script.
+    pub(super) fn looks(&self) -> bool {
+        self.settings.sees() || self.behaviour.reads_views()
     }
 
     /// A fresh map from what is perceived to states.

@@ -201,6 +201,12 @@ impl Plan {
         Parts { behaviour: &self.behaviour, settings: &self.settings, filters: &self.filters }
     }
 
+    /// Whether anything reads what the camera sees: the states, or the script. If nothing does, the camera is not drawn.
+    #[must_use]
+    pub fn looks(&self) -> bool {
+        self.parts().looks()
+    }
+
     /// A fresh filter chain of the first view.
     ///
     /// # Errors

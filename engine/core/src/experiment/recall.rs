@@ -88,6 +88,7 @@ impl Recall {
 
     /// Goes on under the rules of another leg.
     pub(super) fn swap(&mut self, leg: &Plan, carry: Carry, said: &[Rejudged]) -> Result<()> {
+        self.used.settle(&mut Learns(&mut self.learner));
         self.learner.swap(&leg.settings.learner, leg.mirror(&*self.map)?, carry);
         if carry == Carry::Rescore {
             self.learner.rescore(said);

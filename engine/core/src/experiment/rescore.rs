@@ -9,29 +9,15 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::choosers::Learns;
+use super::cycle::Witnessed;
 use super::legs::first_fixed_difference;
-use super::{Ledger, Phase, Plan, Playback};
-use crate::allowed::Allowed;
+use super::relay::UsedDrivers;
+use super::{Chooser, Ledger, Phase, Plan, Playback, Step};
 use crate::diagnostic::{Diagnostic, Result, printable};
-use crate::judge::Judge;
 use crate::learner::{Learner, Policy, Transition, shipped_learner};
-use crate::outcome::Then;
-use crate::robot::Robot;
 use crate::script::Behaviour;
 use crate::settings::{LearnerKind, SETTINGS, apply};
-
-/// What the rules said in one step.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Judged {
-    reward: f64,
-    then: Option<Then>,
-    /// The actions that the script's guards leave at its end.
-    next_allowed: Allowed,
-    /// What delayed rules had built up before the step, and after it.
-    potentials: [f64; 2],
-    /// The robot was put elsewhere after this step, because the recorded run asked for it.
-    moved: bool,
-}
 
 /// One rule over a whole run.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
@@ -68,6 +54,8 @@ pub struct Rescored {
     pub new_recoveries: u64,
     /// Steps in which only the old script asked for recovery.
     pub old_recoveries: u64,
+    /// Steps after which the new script would hand the robot to another policy, or to none; who drove in the record drives on.
+    pub other_hands: u64,
     /// What the old reward teaches.
     pub policy_before: Policy,
     /// What the new reward teaches.
@@ -113,6 +101,9 @@ pub fn plan_with_rules_of(plan: &Plan, behaviour: Arc<Behaviour>) -> Result<Plan
     if let Some((what, place)) = first_fixed_difference(old, new) {
         return other(&behaviour, &what, &place).fail();
     }
+    if plan.behaviour.hands_over() != behaviour.hands_over() || behaviour.always_hands_over() {
+        return other(&behaviour, "who drives", "policy:0").fail();
+    }
     for row in SETTINGS.iter().filter(|row| row.group == "learner" && (row.get)(old) != (row.get)(new)) {
         let value = (row.get)(new);
         if apply(&mut settings, row.group, row.key, &value).is_err() {
@@ -120,7 +111,7 @@ pub fn plan_with_rules_of(plan: &Plan, behaviour: Arc<Behaviour>) -> Result<Plan
         }
     }
     let new = Plan::with_worlds(behaviour, settings, plan.worlds.clone(), Arc::clone(&plan.filters))?;
-    Ok(Plan { origins: plan.origins.clone(), ..new })
+    Ok(Plan { origins: plan.origins.clone(), ..new }.with_used(plan.used.clone()))
 }
 
 fn other(behaviour: &Behaviour, what: &str, place: &str) -> Diagnostic {
@@ -139,43 +130,31 @@ fn other(behaviour: &Behaviour, what: &str, place: &str) -> Diagnostic {
 /// # Errors
 /// If the run cannot be played, or the new script fails on its facts.
 pub fn rescore(plan: &Plan, new: &Plan, seed: u64, ledger: &Ledger, passes: u64) -> Result<Rescored> {
-    let mut playback = Playback::new(plan, seed, Phase::Learning, ledger)?;
-    let mut judge = new.judge()?;
-    enter_world(&mut judge, &playback)?;
+    let mut playback = Playback::judged_by(plan, seed, Phase::Learning, ledger, Some(new))?;
     let mut scores = [
         vec![RuleScore::default(); plan.behaviour.rules().len()],
         vec![RuleScore::default(); new.behaviour.rules().len()],
     ];
-    let mut judged: [Vec<Judged>; 2] = [Vec::with_capacity(ledger.len()), Vec::with_capacity(ledger.len())];
-    let mut potential = 0.0;
-    loop {
-        playback.seek(playback.done())?;
-        enter_world(&mut judge, &playback)?;
-        let Some(step) = playback.advance()? else { break };
-        judge.facts_mut().clone_from(playback.cycle().facts());
-        let verdict = judge.judge()?;
-        let next_allowed = judge.leave().allowed;
-        let potentials = [std::mem::replace(&mut potential, judge.potential()), judge.potential()];
-        if step.moves() || verdict.then.is_some() {
-            judge.recovered();
-            potential = 0.0;
-        }
-        for (scores, fired) in scores.iter_mut().zip([playback.cycle().fired(), judge.fired()]) {
+    let mut judged: [Vec<Step>; 2] = [Vec::with_capacity(ledger.len()), Vec::with_capacity(ledger.len())];
+    let mut other_hands = 0;
+    while let Some(step) = playback.advance()? {
+        let cycle = playback.cycle();
+        let Some((witness, said)) = cycle.witness().and_then(|witness| Some((witness, witness.last()?))) else { break };
+        let policies = [(plan, cycle.driver()), (new, said.driver)].map(|(plan, by)| policy_of(plan, by));
+        other_hands += u64::from(!step.moves() && policies[0] != policies[1]);
+        for (scores, fired) in scores.iter_mut().zip([cycle.fired(), witness.fired()]) {
             for (score, value) in scores.iter_mut().zip(fired) {
                 score.fired += u64::from(value.is_some());
                 score.total += value.unwrap_or(0.0);
             }
         }
-        let moved = step.moves();
-        let old = [step.potential, step.next_potential];
-        let (then, allowed) = (step.then, step.next_allowed);
-        judged[0].push(Judged { reward: step.reward, then, next_allowed: allowed, potentials: old, moved });
-        judged[1].push(Judged { reward: verdict.reward, then: verdict.then, next_allowed, potentials, moved });
+        judged[0].push(step);
+        judged[1].push(under_other_rules(&step, &said));
     }
     let [before, after] = judged;
     let pairs = || before.iter().zip(&after);
-    let count = |is: fn((&Judged, &Judged)) -> bool| pairs().filter(|pair| is(*pair)).count() as u64;
-    let sum = |steps: &[Judged]| steps.iter().map(|step| step.reward).sum();
+    let count = |is: fn((&Step, &Step)) -> bool| pairs().filter(|pair| is(*pair)).count() as u64;
+    let sum = |steps: &[Step]| steps.iter().map(|step| step.reward).sum();
     Ok(Rescored {
         rules: rule_changes(plan, new, &scores),
         reward_before: sum(&before),
@@ -183,10 +162,22 @@ pub fn rescore(plan: &Plan, new: &Plan, seed: u64, ledger: &Ledger, passes: u64)
         steps_changed: count(|(old, new)| old.reward != new.reward),
         new_recoveries: count(|(old, new)| old.then.is_none() && new.then.is_some()),
         old_recoveries: count(|(old, new)| old.then.is_some() && new.then.is_none()),
-        policy_before: learn_along(plan, seed, ledger, &before, passes)?,
-        policy_after: learn_along(new, seed, ledger, &after, passes)?,
+        other_hands,
+        policy_before: learn_along(plan, seed, &before, passes)?,
+        policy_after: learn_along(new, seed, &after, passes)?,
         tries: tries(ledger),
     })
+}
+
+/// A recorded step with what other rules say of it: the robot is put elsewhere where it was in the record.
+fn under_other_rules(step: &Step, said: &Witnessed) -> Step {
+    let Transition { reward, potential, next_potential, next_allowed, .. } = said.transition;
+    Step { reward, then: said.then, potential, next_potential, next_allowed, hop: step.moves(), ..*step }
+}
+
+/// The policy that a use hands the robot to, by its place among those of the script.
+fn policy_of(plan: &Plan, by: Option<usize>) -> Option<usize> {
+    plan.behaviour.uses().nth(by?).map(|(_, policy)| policy)
 }
 
 fn rule_changes(old: &Plan, new: &Plan, scores: &[Vec<RuleScore>; 2]) -> Vec<RuleChange> {
@@ -205,18 +196,8 @@ fn rule_changes(old: &Plan, new: &Plan, scores: &[Vec<RuleScore>; 2]) -> Vec<Rul
     rules
 }
 
-/// Judges on in the world in which the robot is now; on coming there for the first time it is calibrated.
-fn enter_world(judge: &mut Judge, playback: &Playback<'_>) -> Result<()> {
-    judge.go_to(playback.cycle().robot().world_index());
-    if !judge.is_calibrated() {
-        judge.facts_mut().clone_from(playback.cycle().facts());
-        judge.calibrate()?;
-    }
-    Ok(())
-}
-
 /// What a plan's learner learns when it is led along recorded steps once; one-step Q-learning over more passes.
-fn learn_along(plan: &Plan, seed: u64, ledger: &Ledger, judged: &[Judged], passes: u64) -> Result<Policy> {
+fn learn_along(plan: &Plan, seed: u64, steps: &[Step], passes: u64) -> Result<Policy> {
     let mut settings = plan.settings.learner.clone();
     if passes > 1 {
         settings.kind = LearnerKind::Q;
@@ -228,24 +209,19 @@ fn learn_along(plan: &Plan, seed: u64, ledger: &Ledger, judged: &[Judged], passe
         1 => plan.first_learner(&*map, seed)?,
         _ => shipped_learner(&settings, plan.task(&*map, seed)?),
     };
+    let mut used = UsedDrivers::new(plan, seed);
     for _ in 0..passes {
-        for (record, judged) in ledger.records().zip(judged) {
-            learner.visit(record.state as usize);
-            learner.learn(&Transition {
-                state: record.state as usize,
-                action: usize::from(record.action),
-                reward: judged.reward,
-                next_state: record.next_state as usize,
-                ending: judged.then.map(|then| then.ending(judged.reward)),
-                potential: judged.potentials[0],
-                next_potential: judged.potentials[1],
-                next_allowed: judged.next_allowed,
-            });
+        for step in steps {
+            if step.driver.is_none() {
+                learner.visit(step.state);
+            }
+            used.with(Learns(&mut learner)).learn(step);
             // What follows does not follow from this step if the robot was put elsewhere.
-            if judged.then.is_some() || judged.moved {
+            if step.moves() {
                 learner.forget();
             }
         }
+        used.settle(&mut Learns(&mut learner));
         learner.forget();
     }
     Ok(learner.policy())
@@ -253,7 +229,8 @@ fn learn_along(plan: &Plan, seed: u64, ledger: &Ledger, judged: &[Judged], passe
 
 fn tries(ledger: &Ledger) -> BTreeMap<(usize, usize), u64> {
     let mut tries = BTreeMap::new();
-    for record in ledger.records() {
+    // What used policies chose was no choice of the script's own.
+    for record in ledger.records().filter(|record| record.driver.is_none()) {
         *tries.entry((record.state as usize, usize::from(record.action))).or_default() += 1;
     }
     tries

@@ -184,7 +184,7 @@ pub fn test_robot<R: Robot>(
     let run = &plan.settings.run;
     let mut hash = StateHash::default();
     let mut truth = Truth::new(cycle.robot(), &plan.worlds, run.period_s, run.test_steps);
-    let mut trail = Recorder::new(TRAIL_STEPS, cycle.robot());
+    let mut trail = Recorder::new(TRAIL_STEPS, cycle.robot()).in_every_world();
     let mut glimpse = Glimpse::after(SNAPSHOT_STEP.min(run.test_steps));
     let tally = Tally::new(plan.behaviour.rules().len(), run.test_steps);
     let goals_steps = Vec::with_capacity(run.test_steps.min(MOST_GOALS) as usize);

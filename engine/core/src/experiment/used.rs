@@ -1,6 +1,6 @@
 //! Policies that a script uses: each with all that it was learned with, its own script too, and whether it fits this one.
 
-use super::Plan;
+use super::{Leg, Plan};
 use crate::diagnostic::SourceText;
 use crate::geometry::Twist;
 use crate::learner::Policy;
@@ -76,7 +76,10 @@ impl Plan {
     /// The plan with the policies that its script uses.
     #[must_use]
     pub fn with_used(self, used: Vec<Arc<UsedPolicy>>) -> Self {
-        Self { used, ..self }
+        // What is learned under other rules first has them too.
+        let leg = |leg: Leg| Leg { plan: Self { used: used.clone(), ..leg.plan }, ..leg };
+        let earlier = self.earlier.into_iter().map(leg).collect();
+        Self { used, earlier, ..self }
     }
 
     /// All that the robot may be told to do: the script's own actions, then those of the policies that it uses that are none

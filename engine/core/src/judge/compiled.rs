@@ -69,6 +69,8 @@ pub(crate) struct CompiledScript {
     pub counts_way: bool,
     /// Whether it reads what the ground looks like.
     pub reads_ground: bool,
+    /// Whether it reads a fact of any view.
+    pub reads_views: bool,
     /// Whether it reads the facts of the step before.
     pub looks_back: bool,
     /// Where the name of `fn reward` stands, if there is one.

@@ -253,16 +253,18 @@ impl Arithmetic {
 }
 
 impl Comparison {
+    /// All of them, each with its symbol.
+    pub(crate) const ALL: [(&str, Self); 6] = [
+        ("<", Self::Less),
+        ("<=", Self::LessOrEqual),
+        (">", Self::Greater),
+        (">=", Self::GreaterOrEqual),
+        ("==", Self::Equal),
+        ("!=", Self::Unequal),
+    ];
+
     pub(crate) fn of(symbol: &str) -> Option<Self> {
-        Some(match symbol {
-            "<" => Self::Less,
-            "<=" => Self::LessOrEqual,
-            ">" => Self::Greater,
-            ">=" => Self::GreaterOrEqual,
-            "==" => Self::Equal,
-            "!=" => Self::Unequal,
-            _ => return None,
-        })
+        Self::ALL.iter().find(|(known, _)| *known == symbol).map(|(_, comparison)| *comparison)
     }
 
     /// The comparison with its sides exchanged.
@@ -299,18 +301,14 @@ impl Comparison {
             Self::LessOrEqual => a <= b,
             Self::Greater => a > b,
             Self::GreaterOrEqual => a >= b,
-            Self::Equal => distance(a, b) <= f64::EPSILON,
-            Self::Unequal => distance(a, b) > f64::EPSILON,
+            Self::Equal => are_equal(a, b),
+            Self::Unequal => !are_equal(a, b),
         }
     }
 }
 
-/// The interpreter's measure of equality: numbers that differ by rounding only are equal, and NaN is neither.
-fn distance(a: f64, b: f64) -> f64 {
-    let scale = if a * b == 0.0 { 1.0 } else { larger(a.abs(), b.abs()) };
-    if scale == 0.0 { 0.0 } else { (a - b).abs() / scale }
-}
-
-fn larger(a: f64, b: f64) -> f64 {
-    if b > a || a.is_nan() { b } else { a }
+/// Numbers that differ by rounding only are equal; infinity is equal to itself alone, NaN to nothing.
+fn are_equal(a: f64, b: f64) -> bool {
+    let scale = if a * b == 0.0 { 1.0 } else { a.abs().max(b.abs()) };
+    a == b || (a - b).abs() / scale <= f64::EPSILON
 }

@@ -3,6 +3,7 @@
 //! Everything transcendental goes through `libm`, so that a script's numbers are the same on every machine; a platform's
 //! own `sin` is not.
 
+use super::expression::Comparison;
 use rhai::Engine;
 
 /// One row of the list.
@@ -143,10 +144,22 @@ pub(crate) fn register(engine: &mut Engine) {
     engine.register_fn("min", |a: i64, b: i64| a.min(b));
     engine.register_fn("max", |a: i64, b: i64| a.max(b));
     register_clamp(engine);
+    register_comparisons(engine);
     engine.register_fn("sign", |x: f64| sign(x) as i64);
     engine.register_fn("to_int", |x: i64| x);
     // A conversion in Rust stops at the greatest whole number, so that no value is an error here.
     engine.register_fn("to_int", |x: f64| x as i64);
+}
+
+/// The interpreter's own comparisons take numbers for equal that differ by rounding, and nothing for greater or less than an
+/// infinite one; those of compiled rules are put in their place.
+fn register_comparisons(engine: &mut Engine) {
+    engine.set_fast_operators(false);
+    for (symbol, comparison) in Comparison::ALL {
+        engine.register_fn(symbol, move |a: f64, b: f64| comparison.holds(a, b));
+        engine.register_fn(symbol, move |a: f64, b: i64| comparison.holds(a, b as f64));
+        engine.register_fn(symbol, move |a: i64, b: f64| comparison.holds(a as f64, b));
+    }
 }
 
 fn register_clamp(engine: &mut Engine) {

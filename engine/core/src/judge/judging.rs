@@ -279,6 +279,11 @@ impl Judge {
         self.present.compiled.reads_ground
     }
 
+    /// Whether the script reads a fact of any view.
+    pub(crate) fn reads_views(&self) -> bool {
+        self.present.compiled.reads_views
+    }
+
     /// What the script reads of each view besides its grid.
     #[must_use]
     pub fn looks(&self) -> &[Look] {

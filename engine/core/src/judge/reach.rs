@@ -97,6 +97,7 @@ fn check(
 ) -> Result<()> {
     let Some(why) = impossible(condition, limits) else { return Ok(()) };
     let help = match limits.laser.tilt_deg > 0.0 {
+        _ if excludes_itself(condition) => "write || between them where either will do, or turn one of the comparisons",
         true => {
             "the laser looks down and meets the floor: check laser.tilt_deg and laser.height_m; ranges are in metres"
         }
@@ -110,7 +111,7 @@ fn check(
 fn impossible(flag: &Flag, limits: &Limits) -> Option<String> {
     match flag {
         Flag::Constant(false) => Some("this is always false".to_owned()),
-        Flag::And(all) => all.iter().find_map(|part| impossible(part, limits)),
+        Flag::And(all) => all.iter().find_map(|part| impossible(part, limits)).or_else(|| contradiction(all)),
         Flag::Or(any) => {
             any.iter().map(|part| impossible(part, limits)).collect::<Option<Vec<_>>>()?.into_iter().next()
         }
@@ -129,6 +130,59 @@ fn impossible(flag: &Flag, limits: &Limits) -> Option<String> {
         }
         _ => None,
     }
+}
+
+/// What a comparison with a constant asks of a fact: at least and at most so much, and whether the bound itself will do.
+#[derive(Clone, Copy)]
+struct Asked {
+    fact: (FactId, usize),
+    from: (f64, bool),
+    to: (f64, bool),
+}
+
+impl Asked {
+    fn of(flag: &Flag) -> Option<Self> {
+        let Flag::Compare(comparison, pair) = flag else { return None };
+        let fact = |number: &Number| match number {
+            Number::Fact(_, fact) | Number::Whole(_, fact) => Some((*fact, 0)),
+            Number::View(view, _, fact) | Number::ViewWhole(view, _, fact) => Some((*fact, *view)),
+            _ => None,
+        };
+        let (fact, comparison, limit) = match (&pair[0], &pair[1]) {
+            (read, Number::Constant(limit)) => (fact(read)?, *comparison, *limit),
+            (Number::Constant(limit), read) => (fact(read)?, comparison.turned(), *limit),
+            _ => return None,
+        };
+        let (least, most) = ((f64::NEG_INFINITY, true), (f64::INFINITY, true));
+        let (from, to) = match comparison {
+            Comparison::Less => (least, (limit, false)),
+            Comparison::LessOrEqual => (least, (limit, true)),
+            Comparison::Greater => ((limit, false), most),
+            Comparison::GreaterOrEqual => ((limit, true), most),
+            Comparison::Equal => ((limit, true), (limit, true)),
+            Comparison::Unequal => return None,
+        };
+        Some(Self { fact, from, to })
+    }
+
+    /// Whether nothing can be as both ask.
+    fn excludes(&self, other: &Self) -> bool {
+        let beyond = |low: (f64, bool), high: (f64, bool)| low.0 > high.0 || low.0 == high.0 && !(low.1 && high.1);
+        self.fact == other.fact && (beyond(self.from, other.to) || beyond(other.from, self.to))
+    }
+}
+
+/// Whether a condition cannot hold for what it asks alone.
+fn excludes_itself(condition: &Flag) -> bool {
+    matches!(condition, Flag::And(all) if contradiction(all).is_some())
+}
+
+/// Why parts of a condition exclude one another, if two do.
+fn contradiction(all: &[Flag]) -> Option<String> {
+    let asked: Vec<Asked> = all.iter().filter_map(Asked::of).collect();
+    let pairs = asked.iter().enumerate().flat_map(|(index, one)| asked[..index].iter().map(move |other| (other, one)));
+    let excluded = pairs.into_iter().any(|(one, other)| one.excludes(other));
+    excluded.then(|| "one part of this excludes another".to_owned())
 }
 
 fn words((low, high): Interval) -> String {

@@ -224,6 +224,12 @@ impl Behaviour {
         self.compiled.uses.iter().map(|one| (&one.text, one.policy))
     }
 
+    /// Whether its rules, measures or functions read a fact of any view.
+    #[must_use]
+    pub fn reads_views(&self) -> bool {
+        self.compiled.reads_views
+    }
+
     /// Whether it ever hands the robot over to a policy that was learned before.
     #[must_use]
     pub fn hands_over(&self) -> bool {

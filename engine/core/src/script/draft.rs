@@ -188,6 +188,7 @@ impl ReadScript<'_> {
             false => ScriptOutline::default(),
         };
         let (source, stops, ast) = (code.source.clone(), stops::stop_places(&tree.ast), tree.ast);
+        let reads_views = views.iter().any(|view| code.names_besides_calls(view));
         let reads = |word: &str| code.names(word) && !code.defines(word);
         let (counts_way, looks_back) = (reads("odometry") || reads("stage"), reads("previous"));
         let compiled = CompiledScript {
@@ -207,6 +208,7 @@ impl ReadScript<'_> {
             stages,
             counts_way,
             reads_ground: reads("ground"),
+            reads_views,
             looks_back,
             reward,
             reward_parts,

@@ -287,6 +287,16 @@ impl Code {
             .any(|(at, _)| !self.plain[..at].ends_with(part) && !self.plain[at + word.len()..].starts_with(part))
     }
 
+    /// Whether a word stands in the plain code otherwise than as the name of a call, as a group of facts does.
+    pub(super) fn names_besides_calls(&self, word: &str) -> bool {
+        let part = |c: char| c.is_alphanumeric() || c == '_';
+        self.plain.match_indices(word).any(|(at, _)| {
+            let after = &self.plain[at + word.len()..];
+            let whole = !self.plain[..at].ends_with(part) && !after.starts_with(part);
+            whole && !after.trim_start().starts_with('(')
+        })
+    }
+
     /// Whether the script defines a name itself, as a variable, a function or one of its arguments: then the word is its own.
     pub(super) fn defines(&self, name: &str) -> bool {
         self.own.contains(name)

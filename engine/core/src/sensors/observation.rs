@@ -58,7 +58,7 @@ pub struct Scan {
 /// All that one step measures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observation {
-    /// The camera's image; of no pixels where nobody asks for colours or brightness.
+    /// The camera's image; of no pixels where nobody asks for colours or brightness, or for any image at all.
     pub image: Image,
     /// The depth image of the same moment ([`Format::Depth`]); nothing where nobody asks for one.
     pub depth: Option<Image>,
@@ -87,6 +87,12 @@ impl Observation {
             odometry: Twist::default(),
             ground: None,
         }
+    }
+
+    /// From now on asks for the images that another observation asks for.
+    pub(crate) fn ask_anew(&mut self, other: &Self) {
+        self.image.clone_from(&other.image);
+        self.depth.clone_from(&other.depth);
     }
 
     /// Asks for depth too, or for depth alone.

@@ -6,8 +6,8 @@ use super::SeedResult;
 use super::pages::failures;
 use crate::page::median_seed;
 use crate::report::{
-    CurveData, PathsData, PolicyData, PolicyState, TrajectoryData, WorldPlan, learning_curve, paths, policy,
-    snapshot_frame, trajectories,
+    CurveData, PathsData, PolicyData, PolicyState, TrajectoryData, WorldPanel, WorldPlan, learning_curve, paths,
+    policy, snapshot_frame, trajectories, world_trajectories,
 };
 use engine::diagnostic::Result;
 use engine::experiment::{Learned, Plan, Spread, TestRun, Trail, WINDOW_STEPS};
@@ -32,11 +32,16 @@ pub(super) fn draw_seed(folder: &Path, plan: &Plan, result: &SeedResult) -> Resu
     let seed = result.run.summary.seed;
     let title = format!("{} in {}, seed {seed}", plan.behaviour.name(), plan.worlds.title());
     let trail = &result.run.tested.trail;
-    let tested = (&*at_home(plan, "test: first 800 steps", trail), trail);
+    let tested = ("test: first 800 steps", trail);
+    let several = !plan.worlds.further().is_empty();
+    if several {
+        draw_worlds(folder, plan, &format!("{title}: the first 800 steps of the test in each world"), trail)?;
+    }
     match &result.run.learned {
+        Some(learned) if several => draw_policy(folder, plan, learned)?,
+        None if several => {}
         Some(learned) => {
-            let early = at_home(plan, "learning: first 400 steps", &learned.early);
-            draw_trails(folder, plan, &title, &[(&early, &learned.early), tested])?;
+            draw_trails(folder, plan, &title, &[("learning: first 400 steps", &learned.early), tested])?;
             draw_policy(folder, plan, learned)?;
         }
         None => draw_trails(folder, plan, &title, &[tested])?,
@@ -44,14 +49,20 @@ pub(super) fn draw_seed(folder: &Path, plan: &Plan, result: &SeedResult) -> Resu
     draw_frame(folder, plan, &result.run.tested)
 }
 
-/// The name of a panel; of several worlds, with how many of the steps were in the one that is drawn.
-pub(super) fn at_home(plan: &Plan, steps: &str, trail: &Trail) -> String {
-    if plan.worlds.further().is_empty() {
-        return steps.to_owned();
-    }
-    format!("{steps}, {} of them in {}, which is drawn", trail.steps(), plan.layout.name)
+/// Draws the paths in each of several worlds.
+pub(super) fn draw_worlds(folder: &Path, plan: &Plan, title: &str, trail: &Trail) -> Result<()> {
+    let plans: Vec<Plan> = (0..plan.worlds.layouts().len()).map(|world| plan.in_world(world)).collect();
+    let panel = |(world, plan)| -> WorldPanel<'_> {
+        let plan: &Plan = plan;
+        let path = trail.in_world(world).filter(|path| path.steps() > 0);
+        let steps = path.map_or_else(|| "never there".to_owned(), |path| format!("{} steps", path.steps()));
+        WorldPanel { name: format!("{}: {steps}", plan.layout.name), world: WorldPlan::of(plan), path }
+    };
+    let panels: Vec<WorldPanel<'_>> = plans.iter().enumerate().map(panel).collect();
+    world_trajectories(title, &panels)?.write(folder, "trajectories")
 }
 
+/// Draws panels of the world from above.
 pub(super) fn draw_trails(folder: &Path, plan: &Plan, title: &str, panels: &[(&str, &Trail)]) -> Result<()> {
     trajectories(&TrajectoryData { title, world: &WorldPlan::of(plan), panels })?.write(folder, "trajectories")
 }
@@ -72,6 +83,10 @@ pub(super) fn draw_paths(folder: &Path, plan: &Plan, results: &[SeedResult]) -> 
 }
 
 pub(super) fn draw_frame(folder: &Path, plan: &Plan, tested: &TestRun) -> Result<()> {
+    if tested.snapshot.image.pixels.is_empty() {
+        // A robot that is not asked for an image, and has no other.
+        return Ok(());
+    }
     let title = format!("{} in {}: what the robot sees", plan.behaviour.name(), plan.worlds.title());
     snapshot_frame(&title, &tested.snapshot)?.write(folder, "frame")
 }

@@ -6,7 +6,7 @@ use super::CURVE_FILE;
 use super::pages::PAGE_FILE;
 use super::pictures::PICTURES;
 use crate::store::{LOG_FILE, POLICY_FILE, RUN_FILE, SUMMARY_FILE, TAG_FILE, read_stored};
-use engine::diagnostic::{Diagnostic, Result};
+use engine::diagnostic::{Diagnostic, Result, SourceText, printable};
 
 /// Files of a run under names of their own.
 const FILES: [&str; 8] =
@@ -22,9 +22,21 @@ const RESCORE_FILES: [&str; 3] = ["rescore.json", "policy-diff.svg", "policy-dif
 /// `E-RUN-FILE` if the folder is no run; if a file cannot be removed.
 pub fn remove_run(folder: &Path) -> Result<Vec<PathBuf>> {
     read_stored(&folder.join(RUN_FILE))?;
+    if folder.is_symlink() {
+        let message = format!("'{}' is a link to a run somewhere else", printable(&folder.display().to_string()));
+        return Diagnostic::new("E-RUN-FILE", message).help("name the folder itself").fail();
+    }
     let mut kept = Vec::new();
     remove(folder, &is_of_a_run, &mut kept)?;
     Ok(kept)
+}
+
+/// Removes what the engine wrote into the folder of a seed, and the folder unless something else stands in it.
+///
+/// # Errors
+/// If a file cannot be removed.
+pub(super) fn remove_seed(folder: &Path) -> Result<()> {
+    remove(folder, &is_of_a_run, &mut Vec::new())
 }
 
 /// Removes the files of a folder that are `own`, then the folder if it is empty.
@@ -39,10 +51,9 @@ fn remove(folder: &Path, own: &dyn Fn(&str) -> bool, kept: &mut Vec<PathBuf>) ->
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         if path.is_file() && !path.is_symlink() && own(&name) {
             std::fs::remove_file(&path).map_err(|error| disk("remove", &path, error))?;
-        } else if path.is_dir() && !path.is_symlink() && name.starts_with(RESCORE) {
+        } else if is_rescored(&path, &name) {
             remove(&path, &|name| RESCORE_FILES.contains(&name), kept)?;
-        } else if path.is_dir() && !path.is_symlink() && name.parse::<u64>().is_ok() {
-            // The folder of a seed.
+        } else if is_of_a_seed(&path, &name) {
             remove(&path, &is_of_a_run, kept)?;
         } else {
             kept.push(path);
@@ -54,13 +65,25 @@ fn remove(folder: &Path, own: &dyn Fn(&str) -> bool, kept: &mut Vec<PathBuf>) ->
     Ok(())
 }
 
+/// Whether a folder within a run's is what `engine rescore` wrote: whoever else calls one so has no figures of it there.
+fn is_rescored(path: &Path, name: &str) -> bool {
+    name.starts_with(RESCORE) && path.is_dir() && !path.is_symlink() && path.join(RESCORE_FILES[0]).is_file()
+}
+
+/// Whether a folder within a run's is the run of the seed that it is named by.
+fn is_of_a_seed(path: &Path, name: &str) -> bool {
+    let names_it = |run: &SourceText| run.text.lines().any(|line| line.strip_prefix("seed = ") == Some(name));
+    let may = name.parse::<u64>().is_ok() && path.is_dir() && !path.is_symlink();
+    may && read_stored(&path.join(RUN_FILE)).is_ok_and(|run| names_it(&run))
+}
+
 /// Whether a file of this name is one that the engine writes into a run's folder: its own, pictures, steps that were explained.
 fn is_of_a_run(name: &str) -> bool {
     let picture = name.strip_suffix(".svg").or_else(|| name.strip_suffix(".png"));
     let explained = |stem: &str| {
-        let stem = stem.strip_prefix("test-").unwrap_or(stem);
-        let step = stem.strip_prefix("step-").and_then(|rest| rest.rsplit_once('-'));
-        step.is_some_and(|(_, side)| ["before", "after"].contains(&side))
+        let step = stem.strip_prefix("test-").unwrap_or(stem).strip_prefix("step-");
+        let step = step.and_then(|rest| rest.rsplit_once('-'));
+        step.is_some_and(|(step, side)| step.parse::<u64>().is_ok() && ["before", "after"].contains(&side))
     };
     FILES.contains(&name) || picture.is_some_and(|stem| PICTURES.contains(&stem) || explained(stem))
 }
@@ -73,7 +96,8 @@ mod tests {
         for file in files {
             let path = folder.join(file);
             std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-            std::fs::write(path, "").unwrap();
+            let seed = path.parent().and_then(|folder| folder.file_name()).unwrap().to_string_lossy().into_owned();
+            std::fs::write(path, format!("seed = {seed}\n")).unwrap();
         }
     }
 
@@ -88,10 +112,38 @@ mod tests {
     }
 
     #[test]
+    fn what_only_looks_like_a_part_of_a_run_stays() {
+        let place = tempfile::tempdir().unwrap();
+        let run = place.path().join("1");
+        write(&run, &["run.toml", "step-by-step-before.png", "step-7-beside.png"]);
+        // A folder of numbers that is no seed, one of another seed's run, one that only sounds like a rescoring.
+        write(&run, &["2024/summary.json", "rescore-notes/policy-diff.png", "curve.csv/mine.txt"]);
+        std::fs::create_dir_all(run.join("8")).unwrap();
+        std::fs::write(run.join("8/run.toml"), "seed = 9\n").unwrap();
+        let kept = ["2024", "8", "curve.csv", "rescore-notes", "step-7-beside.png", "step-by-step-before.png"]
+            .map(|path| run.join(path));
+        assert_eq!(remove_run(&run).unwrap(), kept);
+        assert!(
+            run.join("2024/summary.json").exists() && run.join("8/run.toml").exists() && !run.join("run.toml").exists()
+        );
+    }
+
+    #[test]
+    fn a_run_behind_a_link_is_not_removed() {
+        let place = tempfile::tempdir().unwrap();
+        write(&place.path().join("1"), &["run.toml", "log.bin"]);
+        let link = place.path().join("link");
+        std::os::unix::fs::symlink(place.path().join("1"), &link).unwrap();
+        assert!(remove_run(&link).unwrap_err().message.contains("is a link"));
+        assert!(place.path().join("1/log.bin").exists());
+    }
+
+    #[test]
     fn what_somebody_else_put_into_a_run_stays_and_is_named() {
         let place = tempfile::tempdir().unwrap();
         let run = place.path().join("1");
         write(&run, &["run.toml", "log.bin", "notes.md", "photos/a.png", "rescore-mine/thesis.tex", "7/mine.txt"]);
+        write(&run, &["rescore-mine/rescore.json", "7/run.toml"]);
         let kept = ["7/mine.txt", "notes.md", "photos", "rescore-mine/thesis.tex"].map(|path| run.join(path));
         assert_eq!(remove_run(&run).unwrap(), kept);
         assert!(kept.iter().all(|path| path.exists()) && !run.join("log.bin").exists());

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::CURVE_FILE;
+use super::removal::remove_seed;
 use crate::store::{LOG_FILE, POLICY_FILE, RUN_FILE, seed_folders};
 use engine::diagnostic::{Diagnostic, Result, printable};
 
@@ -37,7 +38,7 @@ impl Claim<'_> {
     pub(super) fn clear(self, folder: &Path) -> Result<()> {
         let stale = |seed: &u64| !self.is_many() || !self.seeds.contains(seed);
         for (_, seed) in seed_folders(folder).into_iter().filter(|(seed, _)| stale(seed)) {
-            std::fs::remove_dir_all(&seed).map_err(|error| Box::new(Diagnostic::disk("remove", &seed, &error)))?;
+            remove_seed(&seed)?;
         }
         for name in [LOG_FILE, POLICY_FILE, CURVE_FILE] {
             let path = folder.join(name);

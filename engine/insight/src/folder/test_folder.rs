@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::files::{create_folder, write_json};
-use super::pictures::{at_home, draw_frame, draw_trails};
+use super::pictures::{draw_frame, draw_trails, draw_worlds};
 use crate::report::certainty_grid;
 use crate::store::RUN_FILE;
 use engine::diagnostic::{Diagnostic, Result, printable};
@@ -43,7 +43,11 @@ impl TestFolder {
     pub fn write(&self, plan: &Plan, tested: &TestRun, map: Option<&CertaintyGrid>) -> Result<()> {
         write_json(&self.path.join(TEST_FILE), &tested.figures)?;
         let title = format!("{} in {}: test of the frozen policy", plan.behaviour.name(), plan.worlds.title());
-        draw_trails(&self.path, plan, &title, &[(&at_home(plan, "first 800 steps", &tested.trail), &tested.trail)])?;
+        if plan.worlds.further().is_empty() {
+            draw_trails(&self.path, plan, &title, &[("first 800 steps", &tested.trail)])?;
+        } else {
+            draw_worlds(&self.path, plan, &format!("{title}: the first 800 steps in each world"), &tested.trail)?;
+        }
         if let Some(map) = map {
             let title = format!("{} in {}: what the laser found", plan.behaviour.name(), plan.worlds.title());
             let (columns, cell_m, origin_m) = (map.columns(), map.cell_m(), map.origin_m());

@@ -2,7 +2,7 @@
 
 use super::Finding;
 use engine::experiment::Plan;
-use engine::settings::{CombineWay, LearnerKind, LearnerSettings, RecoverTo, SETTINGS, UNNAMED_VIEW};
+use engine::settings::{CombineWay, DrawnFrom, LearnerKind, LearnerSettings, RecoverTo, SETTINGS, UNNAMED_VIEW};
 
 pub(super) fn check_setup(plan: &Plan, findings: &mut Vec<Finding>) {
     for row in SETTINGS {
@@ -14,6 +14,13 @@ pub(super) fn check_setup(plan: &Plan, findings: &mut Vec<Finding>) {
     }
     for varied in &plan.settings.randomise {
         let Some(span) = plan.behaviour.place_of(&format!("randomise.{}", varied.key)) else { continue };
+        if let Some(value) = always_drawn(&varied.from) {
+            let message = format!("{} is drawn for each attempt, and is always {value}", varied.key);
+            let finding = Finding::warning(plan, "W-UNUSED", span, message);
+            findings
+                .push(finding.say("nothing varies", "give a least and a greatest value, or set it without drawing"));
+            continue;
+        }
         let Some((why, help)) = idle(plan, &varied.key) else { continue };
         let message = format!("{} is drawn for each attempt, but nothing reads it", varied.key);
         findings.push(Finding::warning(plan, "W-UNUSED", span, message).say(why, help));
@@ -54,10 +61,22 @@ fn blind_starts(plan: &Plan, findings: &mut Vec<Finding>) {
     }
 }
 
+/// The one value that is drawn, if it is always the same.
+fn always_drawn(from: &DrawnFrom) -> Option<String> {
+    match from {
+        DrawnFrom::Range(low, high) => (low == high).then(|| low.to_string()),
+        DrawnFrom::OneOf(values) => {
+            let first = values.first()?;
+            values.iter().all(|value| value == first).then(|| first.to_string())
+        }
+    }
+}
+
 /// Why a setting has no effect, and what to do about it.
 fn idle(plan: &Plan, name: &str) -> Option<(String, &'static str)> {
     let (settings, outline) = (&plan.settings, plan.behaviour.outline());
     let (learner, combines) = (&settings.learner, !plan.learns());
+    let reads_ground = plan.judge().is_ok_and(|judge| judge.reads_ground());
     let reads_laser = outline.groups.iter().any(|group| group == "laser");
     let (group, key) = name.split_once('.')?;
     if group == "learner"
@@ -70,6 +89,15 @@ fn idle(plan: &Plan, name: &str) -> Option<(String, &'static str)> {
         return Some(why);
     }
     let why = match (group, key) {
+        // A used policy looks through the same camera.
+        ("camera" | "light" | "grid", _) if !plan.looks() && !plan.behaviour.hands_over() => (
+            "neither the rules nor the states look through the camera".to_owned(),
+            "take it out, or read a fact of the camera, such as camera.seen",
+        ),
+        ("colour", _) if !plan.looks() && !plan.behaviour.hands_over() && !reads_ground => (
+            "neither the camera nor the ground is looked at".to_owned(),
+            "take it out, or read a fact of the camera or of the ground",
+        ),
         ("laser", _) if !reads_laser => ("no rule reads the laser".to_owned(), "take it out, or read laser.nearest"),
         ("learner", "failure_is_terminal" | "replay") | ("recovery", _) if !outline.recovers() => {
             ("no rule recovers".to_owned(), "add 'then recover' to a rule, or take it out")

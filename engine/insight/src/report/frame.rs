@@ -27,7 +27,7 @@ pub struct FrameData<'a> {
     pub height_px: usize,
     /// The pictures before the grid, left to right: at least one.
     pub panels: &'a [FramePanel<'a>],
-    /// The grids after them: at least one.
+    /// The grids after them; none if nobody reads what the camera sees.
     pub views: &'a [SeenView],
     /// The state's number.
     pub state: usize,
@@ -106,7 +106,9 @@ pub fn frame(data: &FrameData<'_>) -> Result<Picture> {
     let apart = (panel_width + GAP_PX).max(LEAST_APART_PX);
     let top = BELOW_TITLE_PX + 30.0;
     let panels = data.panels.len();
-    let sheet_width = 2.0 * MARGIN_PX + (panels + data.views.len()) as f64 * apart - GAP_PX;
+    let panels_width = (panels + data.views.len()) as f64 * apart - GAP_PX;
+    // One panel alone leaves room for the title too.
+    let sheet_width = 2.0 * MARGIN_PX + panels_width.max(2.0 * LEAST_APART_PX);
     let mut sheet = Sheet::new(sheet_width, top + panel_height + 74.0, data.title);
     let panel = |index: usize| {
         let left = MARGIN_PX + index as f64 * apart + ((apart - GAP_PX - panel_width) / 2.0).floor();
@@ -115,7 +117,8 @@ pub fn frame(data: &FrameData<'_>) -> Result<Picture> {
     };
     for (index, shown) in data.panels.iter().enumerate() {
         let (min, max) = panel(index);
-        title(&mut sheet, min, max, shown.name, &shown.caption(width, height));
+        let unread = if data.views.is_empty() { ", which the script does not read" } else { "" };
+        title(&mut sheet, min, max, shown.name, &format!("{}{unread}", shown.caption(width, height)));
         let rgb = thinned(rows, columns, |row, column| shown.colour(row * keep * width + column * keep));
         sheet.image(min, max, columns, rows, rgb);
         sheet.border(min, max, FRAME);
@@ -131,7 +134,8 @@ pub fn frame(data: &FrameData<'_>) -> Result<Picture> {
         grid(&mut sheet, min, max, view);
     }
     let names: Vec<&str> = data.panels.iter().map(|panel| panel.name).collect();
-    sheet.finish(&format!("What the robot sees: {}, and the grid in state {}", names.join(", "), data.state))
+    let read = if data.views.is_empty() { "which the script does not read," } else { "and the grid" };
+    sheet.finish(&format!("What the robot sees: {}, {read} in state {}", names.join(", "), data.state))
 }
 
 fn check_parts(data: &FrameData<'_>) -> Result<()> {
@@ -144,7 +148,7 @@ fn check_parts(data: &FrameData<'_>) -> Result<()> {
         let cells = view.grid.0 * view.grid.1;
         cells > 0 && [view.shares.len(), view.occupied.len(), view.filled.len()] == [cells; 3]
     };
-    if data.views.is_empty() || !data.views.iter().all(whole) {
+    if !data.views.iter().all(whole) {
         return Err(failed("the grid does not have rows times columns cells"));
     }
     Ok(())

@@ -23,6 +23,7 @@ mod route;
 mod sheet;
 mod trajectory;
 mod vector;
+mod worlds;
 
 pub use atomic::write_atomic;
 pub use certainty::certainty_grid;
@@ -38,6 +39,7 @@ pub use plan::WorldPlan;
 pub use policy::{PolicyData, PolicyState, policy};
 pub use policy_diff::{PolicyDiffData, StateChange, policy_diff};
 pub use trajectory::{TrajectoryData, trajectories};
+pub use worlds::{WorldPanel, world_trajectories};
 
 #[cfg(test)]
 mod tests;

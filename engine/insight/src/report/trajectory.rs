@@ -12,7 +12,7 @@ use engine::diagnostic::Result;
 use engine::experiment::Trail;
 use engine::world::Route;
 
-const WIDTH_PX: f64 = 1400.0;
+pub(super) const WIDTH_PX: f64 = 1400.0;
 /// Room for four digits and the title beside them.
 pub(super) const LEFT_PX: f64 = 66.0;
 
@@ -127,7 +127,8 @@ impl FloorPlan {
     }
 }
 
-fn explain(sheet: &mut Sheet, world: &WorldPlan<'_>, goals: bool) {
+/// The signs of a picture of paths, below it.
+pub(super) fn explain(sheet: &mut Sheet, world: &WorldPlan<'_>, goals: bool) {
     let middle = |from: Spot, to: Spot| ((from.0 + to.0) / 2, (from.1 + to.1) / 2);
     let end = spot(WIDTH_PX - MARGIN_PX, sheet.height_px - 28.0);
     let time = |sheet: &mut Sheet, from: Spot, to: Spot| {

@@ -30,7 +30,11 @@ pub(super) fn open(
 }
 
 /// The policy of a pack, as the run of its behaviour that it would have been learned in; nothing if there is no such pack.
-fn packed_policy(argument: &Path, filters: &FilterSources, allow_unsigned: bool) -> Result<Option<PolicyText>> {
+pub(super) fn packed_policy(
+    argument: &Path,
+    filters: &FilterSources,
+    allow_unsigned: bool,
+) -> Result<Option<PolicyText>> {
     let Some((pack, depends)) = open_pack(argument, allow_unsigned)? else { return Ok(None) };
     let Runnable { plan, .. } = pack.plan(&depends, &Overrides::default(), sources(filters)?)?;
     let Some(policy) = pack.policy(&plan)? else {

@@ -40,6 +40,8 @@ struct RescoreReport {
     /// Steps in which only the new script asks for recovery, and only the old one did.
     new_recoveries: u64,
     old_recoveries: u64,
+    /// Steps after which the new script would have handed the robot to another policy, or to none.
+    other_hands: u64,
     /// States that the record visits.
     states_visited: usize,
     /// Those whose best action changes, the most visited first.
@@ -78,13 +80,6 @@ pub(crate) fn run(arguments: &RescoreArguments, console: &mut Console) -> std::r
         let error = Diagnostic::new("E-RESCORE", message).help("give a run that learned");
         return Err(Box::new(error).into());
     }
-    if plan.behaviour.hands_over() {
-        let message =
-            "the script of this run uses other policies: which of them drove depends on it, not on a reward alone";
-        let error =
-            Diagnostic::new("E-RESCORE", message).help("learn it anew under the other reward: engine run SCRIPT");
-        return Err(Box::new(error).into());
-    }
     if !plan.earlier.is_empty() {
         let message = "the reward of this run was swapped while it learned: there is no one reward to compare with";
         let error = Diagnostic::new("E-RESCORE", message);
@@ -113,6 +108,7 @@ pub(crate) fn run(arguments: &RescoreArguments, console: &mut Console) -> std::r
         steps_changed: rescored.steps_changed,
         new_recoveries: rescored.new_recoveries,
         old_recoveries: rescored.old_recoveries,
+        other_hands: rescored.other_hands,
         states_visited: rescored.policy_before.states_met(),
         states_changed: states_changed.collect::<Result<_>>()?,
     };
@@ -213,6 +209,12 @@ fn print(
         console.line(&format!(
             "note:      {} recoveries would not have happened; the recorded robot was put back all the same",
             report.old_recoveries
+        ))?;
+    }
+    if report.other_hands > 0 {
+        console.line(&format!(
+            "note:      after {} steps another policy would have driven, or none; the recorded one drove on",
+            report.other_hands
         ))?;
     }
     print_states(console, plan, report)?;

@@ -44,6 +44,10 @@ pub(crate) fn run(arguments: &WatchArguments, console: &mut Console) -> Result<u
         finished: out.clone().map(finished),
         overrides,
         filter_folders: sources.filter_dir.clone(),
+        packed: {
+            let sources = sources.clone();
+            Box::new(move |path| super::behaviour::packed_policy(path, &sources, false))
+        },
         filters: Box::new(move || super::sources::catalogue(&sources)),
     };
     let relearner = Relearner::new(settings, Arc::clone(&board));

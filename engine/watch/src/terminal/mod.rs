@@ -23,6 +23,7 @@ mod rules;
 mod screen;
 mod step;
 mod story;
+mod traces;
 mod tty;
 mod view;
 mod words;
@@ -39,6 +40,7 @@ pub use ink::TerminalInk;
 pub use keys::Wish;
 pub use player::{Moment, Question};
 pub use screen::draw_screen;
+pub use traces::MeasureTraces;
 pub use view::{Panel, View};
 
 use super::board::Board;
@@ -95,6 +97,10 @@ fn follow(tty: &mut Tty, board: &Board, asker: &Asker, address: &str, stop: &Ato
         stale |= view.advance(elapsed_s);
         if let Some(answer) = player.answered() {
             view.take(answer);
+            stale = true;
+        }
+        if let Some(traces) = player.traced() {
+            view.take_traces(traces);
             stale = true;
         }
         if stale {

@@ -4,6 +4,7 @@
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use super::traces::{MeasureTraces, Tracer};
 use crate::SavedRun;
 use engine::experiment::{Ledger, Phase, Playback, StepReasons};
 use insight::page::recall_of;
@@ -37,11 +38,14 @@ pub struct Moment {
 
 /// An answer with its question.
 pub(super) type Answer = (Question, Option<Arc<Moment>>);
+/// The measures of a phase, with a question about it.
+pub(super) type Traced = (Question, Arc<MeasureTraces>);
 
 #[derive(Default)]
 struct PlayerDesk {
     asked: Option<Question>,
     answered: Option<Answer>,
+    traced: Option<Traced>,
     over: bool,
 }
 
@@ -88,6 +92,11 @@ impl Player {
         waited.unwrap_or_else(PoisonError::into_inner).0.answered.take()
     }
 
+    /// The measures of a phase, once they have been played.
+    pub(super) fn traced(&self) -> Option<Traced> {
+        lock(&self.desk.0).traced.take()
+    }
+
     /// An answer that came later.
     pub(super) fn answered(&self) -> Option<Answer> {
         lock(&self.desk.0).answered.take()
@@ -121,15 +130,25 @@ fn play(first: &Question, desk: &(Mutex<PlayerDesk>, Condvar)) -> Option<Questio
         Phase::Learning => playback.recalling(),
         Phase::Test => Ok(playback.with_recall(recall_of(plan, seed.seed, &seed.learning)?)),
     });
+    let newer = || {
+        let desk = lock(&desk.0);
+        desk.over || desk.asked.is_some()
+    };
+    let measures = plan.behaviour.measures().next().is_some();
+    let mut tracer = measures.then(|| Tracer::new(plan, seed.seed, first.phase, ledger).ok()).flatten();
     loop {
-        let newer = || {
-            let desk = lock(&desk.0);
-            desk.over || desk.asked.is_some()
-        };
         let found = playback.as_mut().map_or(Some(None), |playback| moment(playback, &question, ledger, newer));
         if let Some(found) = found {
             lock(&desk.0).answered = Some((question, found.map(Arc::new)));
             desk.1.notify_all();
+        }
+        // What cannot be played has no traces.
+        match tracer.as_mut().map(|tracer| tracer.go_on(newer)) {
+            Some(Ok(None)) | None => {}
+            Some(traces) => {
+                tracer = None;
+                lock(&desk.0).traced = traces.ok().flatten().map(|traces| (first.clone(), Arc::new(traces)));
+            }
         }
         question = next(desk)?;
         if !question.same_steps(first) {

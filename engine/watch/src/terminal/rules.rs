@@ -1,4 +1,5 @@
-//! The rules: what each adds, how often it fired, and when; those that fire in the shown step are lit. Below them the stages.
+//! The rules: what each adds, how often it fired, and when; those that fire in the shown step are lit. Below them the
+//! stages and the measures.
 
 use ratatui_core::buffer::Buffer;
 use ratatui_core::layout::Rect;
@@ -11,7 +12,7 @@ use super::story::part;
 use super::view::View;
 use super::words::{columns, fit, signed, total};
 use insight::page::Document;
-use insight::words::whole;
+use insight::words::{typeset, whole};
 
 /// The most rules in the small panel.
 const MOST: usize = 8;
@@ -19,7 +20,8 @@ const MOST: usize = 8;
 /// Rows that the small panel takes.
 pub(super) fn height(view: &View, body: Rect) -> u16 {
     let stages = |document: &Document| document.stages.as_ref().map_or(0, |stages| stages.names.len());
-    let rules = view.document().map_or(0, |document| document.rules.len() + stages(document)).min(MOST) as u16;
+    let all = |document: &Document| document.rules.len() + stages(document) + document.measures.len();
+    let rules = view.document().map_or(0, all).min(MOST) as u16;
     (1 + rules.max(1)).min(body.height / 3)
 }
 
@@ -68,6 +70,7 @@ pub(super) fn draw_rules(view: &View, area: Rect, buffer: &mut Buffer) {
         })
         .collect();
     lines.extend(stages(view, document, name_width, rest));
+    lines.extend(measures(view, document, name_width, rest));
     write_all(&lines, view.scroll, inner, buffer);
 }
 
@@ -94,6 +97,27 @@ fn stages<'a>(view: &View, document: &'a Document, name_width: usize, rest: usiz
     stages.names.iter().enumerate().map(line).collect()
 }
 
+/// The measures: each between its least and its greatest mean, and its value in the shown step.
+fn measures<'a>(view: &View, document: &'a Document, name_width: usize, rest: usize) -> Vec<Line<'a>> {
+    let now = part(view.step, view.story.kept, rest);
+    let word = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| fit(&typeset(value), 8));
+    let line = |(measure, name): (usize, &'a String)| {
+        let name = fit(name, name_width);
+        let pad = " ".repeat(name_width - columns(&name));
+        let value = view.moment().and_then(|moment| moment.measures.get(measure).copied());
+        let range = view.traces().and_then(|traces| traces.range(measure));
+        let [value, least, most] = [value, range.map(|range| range[0]), range.map(|range| range[1])].map(word);
+        let right = |text: &str, width: usize| format!("{}{text}", " ".repeat(width.saturating_sub(columns(text))));
+        let numbers = format!("{pad}{}{}{}  ", right(&value, 12), right(&least, 8), right(&most, 9));
+        let mut spans = vec![Span::styled("∿ ", view.ink.accent()), Span::raw(name), Span::raw(numbers)];
+        let bars = Bars { now, style: view.ink.accent(), fine: view.ink.fine };
+        let heights = view.traces().map_or_else(|| vec![None; rest], |traces| traces.heights(measure, rest));
+        spans.extend(bars.heights(&heights));
+        Line::from(spans)
+    };
+    document.measures.iter().enumerate().map(line).collect()
+}
+
 /// Bars from the first step to the last; the part with the shown step stands out.
 struct Bars {
     now: usize,
@@ -113,6 +137,13 @@ impl Bars {
         let most = parts.iter().fold(0.0, |most, sum| sum.abs().max(most)).max(f64::MIN_POSITIVE);
         let bars = parts.iter().map(|sum| (sum.abs() / most, if *sum < 0.0 { bad } else { self.style }));
         self.spans(bars, '┈')
+    }
+
+    /// How high something was in each part, 0 to 1; nothing where it was not known.
+    fn heights(&self, heights: &[Option<f64>]) -> Vec<Span<'static>> {
+        // Squared, since bars go with the square root; the lowest is seen too.
+        let bars = heights.iter().map(|height| (height.map_or(0.0, |height| (height * height).max(1e-4)), self.style));
+        self.spans(bars, '·')
     }
 
     fn spans(&self, bars: impl Iterator<Item = (f64, Style)>, none: char) -> Vec<Span<'static>> {

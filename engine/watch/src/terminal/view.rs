@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use super::ink::TerminalInk;
-use super::player::{Answer, Moment, Question};
+use super::player::{Answer, Moment, Question, Traced};
 use super::story::Story;
+use super::traces::MeasureTraces;
 use crate::{Shown, ShownRun, WatchedSeed};
 use engine::experiment::{Ledger, Phase, Record};
 use insight::page::Document;
@@ -51,6 +52,7 @@ pub struct View {
     pub(super) scroll: usize,
     pub(super) story: Story,
     answer: Option<Answer>,
+    traced: Option<Traced>,
     /// The part of a step that has gone by while playing.
     share: f64,
     /// Whether the reader has chosen a step; until then it is the last one.
@@ -76,6 +78,7 @@ impl View {
             scroll: 0,
             story: Story::default(),
             answer: None,
+            traced: None,
             share: 0.0,
             moved: false,
         }
@@ -100,6 +103,17 @@ impl View {
     /// Keeps what was played again.
     pub fn take(&mut self, answer: Answer) {
         self.answer = Some(answer);
+    }
+
+    /// Keeps what the measures of a phase came to.
+    pub fn take_traces(&mut self, traced: Traced) {
+        self.traced = Some(traced);
+    }
+
+    /// What the measures of the shown phase came to, once that has come.
+    pub(super) fn traces(&self) -> Option<&MeasureTraces> {
+        let (of, traces) = self.traced.as_ref()?;
+        Some(&**traces).filter(|_| self.here().is_some_and(|here| of.same_steps(&here)))
     }
 
     /// What has to be played again to show the step whole; nothing if it is known, or there is no run.

@@ -33,6 +33,12 @@ impl<R: Robot> Cycle<R> {
         &self.judge
     }
 
+    /// The share of the last image that the filters of the first view left, 0 to 1; 0 if the script reads nothing of the camera.
+    #[must_use]
+    pub fn coverage(&self) -> f64 {
+        self.facts().views.first().filter(|_| self.looks).map_or(0.0, |view| view.coverage)
+    }
+
     /// What the script was told in the last step.
     #[must_use]
     pub fn facts(&self) -> &Facts {
@@ -51,7 +57,7 @@ impl<R: Robot> Cycle<R> {
         &self.observation
     }
 
-    /// What each of the script's own views made of the last image.
+    /// What each of the script's own views made of the last image; nothing if nobody reads what the camera sees.
     pub fn views(&self) -> impl Iterator<Item = SeenView> {
         self.eyes[0].views()
     }
@@ -62,7 +68,8 @@ impl<R: Robot> Cycle<R> {
         self.eyes[0].chain().mask()
     }
 
-    /// What each of the script's own filters made of the last image, view by view, in order.
+    /// What each of the script's own filters made of the last image, view by view, in order; nothing if nobody reads what the
+    /// camera sees.
     pub fn stages(&self) -> impl Iterator<Item = ViewStage<'_>> {
         self.eyes[0].stages()
     }

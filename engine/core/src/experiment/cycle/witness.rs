@@ -9,15 +9,30 @@ use crate::experiment::telling::tell;
 use crate::experiment::{Plan, Step};
 use crate::judge::{Judge, Look, NO_ACTION};
 use crate::learner::{Rejudged, Transition};
+use crate::outcome::Then;
 use crate::robot::Robot;
+
+/// What is said of one step by who judges along.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::experiment) struct Witnessed {
+    pub transition: Transition,
+    /// What these rules say if the attempt ends here by them.
+    pub then: Option<Then>,
+    /// The use that holds at its end.
+    pub driver: Option<usize>,
+}
 
 /// A judge that looks on.
 pub(in crate::experiment) struct Witness {
     judge: Judge,
     /// What its delayed rules have built up.
     potential: f64,
-    /// What it said of the latest steps, the oldest first.
+    /// What it said of the latest steps that were the script's own, the oldest first.
     said: VecDeque<Rejudged>,
+    /// The last of these goes on while used policies drive.
+    goes_on: bool,
+    /// What it said of the last step, whoever drove.
+    last: Option<Witnessed>,
     /// So many are kept.
     most: usize,
 }
@@ -30,12 +45,18 @@ impl Witness {
     fn new(rules: &Plan, under: &Plan) -> Result<Self> {
         let parts = Parts { behaviour: &rules.behaviour, settings: &under.settings, filters: &under.filters };
         let judge = parts.judge()?.in_worlds(under.names_of_starts());
+        let own = under.settings.actions.len();
+        let judge = if under.used.is_empty() { judge } else { judge.with_actions(&under.motions(), own) };
         let most = under.settings.learner.memory_steps as usize;
-        Ok(Self { judge, potential: 0.0, said: VecDeque::new(), most })
+        Ok(Self { judge, potential: 0.0, said: VecDeque::new(), goes_on: false, last: None, most })
     }
 
     fn looks(&self) -> &[Look] {
         self.judge.looks()
+    }
+
+    pub(super) fn reads_views(&self) -> bool {
+        self.judge.reads_views()
     }
 
     pub(super) fn reads_ground(&self) -> bool {
@@ -55,15 +76,46 @@ impl Witness {
             next_allowed: self.judge.leave().allowed,
             ..step.transition()
         };
-        if self.said.len() == self.most {
-            self.said.pop_front();
-        }
-        self.said.push_back(Rejudged { transition, moved: step.moves() });
+        self.last = Some(Witnessed { transition, then: verdict.then, driver: self.judge.driver() });
+        self.note(Rejudged { transition, moved: step.moves() }, step);
         if verdict.then.is_some() && !step.moves() {
             // Its attempt has ended, though the robot goes on from where it is.
             self.begin();
         }
         Ok(())
+    }
+
+    /// Keeps what it said of a step of the script's own; a hand-over to a used policy belongs to the step before it, as it does
+    /// for who learns.
+    fn note(&mut self, said: Rejudged, step: &Step) {
+        match (step.driver, self.said.back_mut().filter(|_| self.goes_on)) {
+            (None, _) => {
+                if self.said.len() == self.most {
+                    self.said.pop_front();
+                }
+                self.said.push_back(said);
+            }
+            (Some(_), Some(own)) => {
+                let Rejudged { transition, moved } = said;
+                let Transition { state, action, reward, potential, .. } = own.transition;
+                own.transition = Transition { state, action, potential, ..transition };
+                own.transition.reward += reward;
+                own.moved = moved;
+            }
+            (Some(_), None) => return,
+        }
+        let ended = self.last.is_some_and(|last| last.then.is_some()) || step.moves();
+        self.goes_on = step.hands_over && !ended;
+    }
+
+    /// By rule: what each added in the last step, if it fired.
+    pub(in crate::experiment) fn fired(&self) -> &[Option<f64>] {
+        self.judge.fired()
+    }
+
+    /// What it said of the last step.
+    pub(in crate::experiment) fn last(&self) -> Option<Witnessed> {
+        self.last
     }
 
     /// Another attempt begins.
@@ -88,6 +140,16 @@ impl<R: Robot> Cycle<R> {
     /// What the witness that was called first has said; it looks on no more.
     pub(in crate::experiment) fn dismiss_witness(&mut self) -> Vec<Rejudged> {
         if self.witnesses.is_empty() { Vec::new() } else { self.witnesses.remove(0).said.into() }
+    }
+
+    /// The first of those that judge along.
+    pub(in crate::experiment) fn witness(&self) -> Option<&Witness> {
+        self.witnesses.first()
+    }
+
+    /// The use by which a policy is to drive now.
+    pub(in crate::experiment) fn driver(&self) -> Option<usize> {
+        self.co_drivers.by()
     }
 
     /// Looks for all that anybody who judges reads.

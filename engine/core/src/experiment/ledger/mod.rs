@@ -194,7 +194,7 @@ impl Ledger {
             beam: cycle.fired_beam().map(|beam| beam as u16),
             nearest_beam: nearest_beam as u16,
             nearest_m: facts.ranges_m.get(nearest_beam).copied().unwrap_or(0.0),
-            coverage: facts.views.first().map_or(0.0, |view| view.coverage as f32),
+            coverage: cycle.coverage() as f32,
         };
         self.bytes.extend_from_slice(&record.to_bytes());
         self.add_fired(cycle.fired());

@@ -161,6 +161,85 @@ fn native_rules_and_interpreted_rules_agree() {
     assert!(compared > 4000, "{compared}");
 }
 
+/// Numbers by which comparisons could be told apart: none, infinite, next to one another, next to zero, huge.
+const SPECIAL: [f64; 14] = [
+    f64::NAN,
+    f64::INFINITY,
+    f64::NEG_INFINITY,
+    0.0,
+    -0.0,
+    5e-324,
+    1e-17,
+    0.3,
+    0.1 + 0.2,
+    1.0,
+    1.0 + f64::EPSILON,
+    -1.0,
+    f64::MAX,
+    f64::MIN,
+];
+
+#[test]
+fn a_comparison_of_any_two_numbers_is_the_same_in_the_interpreter_and_where_it_is_compiled() {
+    for operator in ["<", "<=", ">", ">=", "==", "!="] {
+        for (a, b) in [
+            ("robot.linear", "robot.angular"),
+            ("robot.linear", "0.3"),
+            ("robot.linear", "1"),
+            ("-1", "robot.angular"),
+            ("mean", "robot.linear"),
+            ("moved", "robot.angular"),
+            ("moved", "0"),
+            ("robot.linear - robot.angular", "mean * 2.0"),
+        ] {
+            let head = format!(
+                "{HEAD} measure mean = average(robot.linear, 1.0); measure moved = change(robot.linear);
+                 rule \"mark\" when robot.linear {operator} robot.angular => 0;"
+            );
+            let native = format!("{head} rule \"a\" when {a} {operator} {b} && since(\"mark\") >= 0 => 1;");
+            let other = format!("{head} measure ago = since(\"mark\"); rule \"a\" when same({a} {operator} {b}) => 1;");
+            let mut judges = [native, other].map(|text| parse(&text).unwrap().judge(0.5, fan(BEAMS)).unwrap());
+            for pair in SPECIAL.iter().flat_map(|a| SPECIAL.iter().map(move |b| (*a, *b))) {
+                let verdicts = judges.each_mut().map(|judge| {
+                    let facts = judge.facts_mut();
+                    facts.ranges_m = vec![1.0; BEAMS];
+                    (facts.linear_m_per_s, facts.angular_rad_per_s) = pair;
+                    judge.calibrate().unwrap();
+                    judge.judge().map(|verdict| verdict.reward).map_err(|wrong| wrong.code)
+                });
+                assert_eq!(verdicts[0], verdicts[1], "{a} {operator} {b} of {pair:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn comparisons_are_those_of_arithmetic_but_for_rounding() {
+    let holds = |condition: &str, linear: f64| {
+        [condition.to_owned(), format!("same({condition})")].map(|condition| {
+            let mut judge =
+                parse(&format!("{HEAD} rule \"a\" when {condition} => 1;")).unwrap().judge(0.5, fan(BEAMS)).unwrap();
+            judge.facts_mut().ranges_m = vec![1.0; BEAMS];
+            judge.facts_mut().linear_m_per_s = linear;
+            judge.calibrate().unwrap();
+            judge.judge().unwrap().reward == 1.0
+        })
+    };
+    for (condition, linear, wanted) in [
+        ("robot.linear > 1.0", f64::INFINITY, true),
+        ("robot.linear >= robot.linear", f64::INFINITY, true),
+        ("robot.linear == robot.linear", f64::INFINITY, true),
+        ("robot.linear == -robot.linear", f64::INFINITY, false),
+        ("robot.linear != robot.linear", f64::NAN, true),
+        ("robot.linear == robot.linear", f64::NAN, false),
+        ("robot.linear < 1.0", f64::NAN, false),
+        ("robot.linear == 0.3", 0.1 + 0.2, true),
+        ("robot.linear > 0.3", 0.1 + 0.2, true),
+    ] {
+        assert_eq!(holds(condition, linear), [wanted; 2], "{condition} of {linear}");
+    }
+}
+
 #[test]
 fn the_rules_of_the_scripts_are_native() {
     for name in ["wall", "corridor", "platform", "object"] {
