@@ -1,5 +1,6 @@
 //! One step of the robot, the order of which is the order of the folders: act, sense, filter, state, judge.
 
+mod passed;
 mod shown;
 mod witness;
 

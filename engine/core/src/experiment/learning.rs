@@ -8,10 +8,11 @@ use super::digest::StateHash;
 use super::legs::with_gone;
 use super::relay::UsedDrivers;
 use super::trail::{Recorder, Trail};
-use super::{Cycle, Ledger, Observer, Phase, Plan, Step, Tally, WINDOW_STEPS, drive};
+use super::{Checkpoints, Cycle, Ledger, Observer, Phase, Plan, Step, Tally, WINDOW_STEPS, drive};
 use crate::diagnostic::{Diagnostic, Result};
 use crate::learner::{Carry, Learner, Policy, Rejudged, ShippedLearner};
 use crate::robot::{Robot, SimulatedRobot};
+use crate::saved::{Loading, Passed, Passing, Saving, Unfit};
 
 /// How far a seed has come, said at the end of every window.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -96,7 +97,25 @@ pub fn learn_into(
     report: &(dyn Fn(Progress) + Sync),
     ledger: &mut Ledger,
 ) -> std::result::Result<Learned, Box<BrokenOff>> {
-    let mut learning = learn_through(plan, seed, None, stop, report, ledger)?;
+    learn_kept(plan, seed, stop, report, ledger, Checkpoints::NONE)
+}
+
+/// Learns, keeps every step in a ledger, and from time to time all that goes on.
+///
+/// # Errors
+/// As [`learn`]; `E-CHECKPOINT` if what it is to go on from does not fit, and what keeping it fails with.
+pub fn learn_kept(
+    plan: &Plan,
+    seed: u64,
+    stop: &AtomicBool,
+    report: &(dyn Fn(Progress) + Sync),
+    ledger: &mut Ledger,
+    checkpoints: Checkpoints<'_>,
+) -> std::result::Result<Learned, Box<BrokenOff>> {
+    let mut learning = match checkpoints.of(plan) {
+        Some(checkpoints) => checkpoints.learn(plan, seed, stop, report, ledger)?,
+        None => learn_through(plan, seed, None, stop, report, ledger)?,
+    };
     let learned = learning.finish();
     match learning.fault {
         Some(error) => Err(Box::new(BrokenOff { error, learned: Some(learned) })),
@@ -183,6 +202,42 @@ impl<R: Robot, L: Learner> Learning<R, L> {
             cycle,
             fault: None,
         }
+    }
+
+    /// All that goes on, as bytes: the same plan and seed learn on from them as if nobody had looked.
+    ///
+    /// # Errors
+    /// If there is no such form of it: a robot that cannot be left, rules that judge along.
+    pub fn save(&mut self) -> std::result::Result<Vec<u8>, Unfit> {
+        let mut by = Passing::Out(Saving::default());
+        self.pass(&mut by)?;
+        if let Passing::Out(saving) = by { Ok(saving.into_bytes()) } else { Err(Unfit) }
+    }
+
+    /// Becomes what was saved of the same plan under the same seed.
+    ///
+    /// # Errors
+    /// If it does not fit: then it is good for nothing any more.
+    pub fn load(&mut self, bytes: &[u8]) -> std::result::Result<(), Unfit> {
+        let mut by = Passing::In(Loading::new(bytes));
+        self.pass(&mut by)?;
+        if let Passing::In(loading) = by { loading.end() } else { Err(Unfit) }
+    }
+
+    fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        if !self.used.is_empty() || self.fault.is_some() {
+            return Err(Unfit);
+        }
+        self.cycle.pass(by)?;
+        self.tally.pass(by)?;
+        self.early.pass(by)?;
+        self.hash.pass(by)?;
+        by.list(&mut self.joined.steps, Passing::whole)?;
+        match by {
+            Passing::Out(saving) => self.learner.save(saving),
+            Passing::In(loading) => self.learner.load(loading)?,
+        }
+        Ok(())
     }
 
     /// Whose learning it is.

@@ -6,6 +6,7 @@ use super::{Cycle, Observer, Step};
 use crate::geometry::Pose;
 use crate::outcome::Ending;
 use crate::robot::Robot;
+use crate::saved::{Passed, Passing};
 
 /// A path in the home world: legs between recoveries, and where it failed and reached its goals.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -44,6 +45,20 @@ impl Recorder {
         leg.extend(place(robot));
         let movers = (0..).map_while(|index| robot.mover(index)).collect();
         Self { trail: Trail { legs: vec![leg], movers, ..Trail::default() }, left: steps }
+    }
+
+    pub(super) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        let point = |by: &mut Passing<'_>, [x, y]: &mut [f32; 2]| {
+            by.single(x)?;
+            by.single(y)
+        };
+        let Trail { legs, failures, last, goals, movers } = &mut self.trail;
+        by.list(legs, |by, leg| by.list(leg, point))?;
+        by.list(failures, point)?;
+        by.list(goals, point)?;
+        by.option(last, Passing::pose)?;
+        by.list(movers, Passing::pose)?;
+        by.whole(&mut self.left)
     }
 
     pub(super) fn finish(self) -> Trail {

@@ -2,15 +2,28 @@
 
 use std::path::{Path, PathBuf};
 
-use super::CURVE_FILE;
 use super::pages::PAGE_FILE;
 use super::pictures::PICTURES;
-use crate::store::{LOG_FILE, POLICY_FILE, RUN_FILE, SUMMARY_FILE, TAG_FILE, read_stored};
+use super::test_folder::TEST_FILE;
+use super::{CURVE_FILE, DISAGREEMENTS_FILE};
+use crate::disk::{RESUMABLE, is_there, is_unfinished};
+use crate::store::{CHECKPOINT_FILE, LOG_FILE, POLICY_FILE, RUN_FILE, STEPS_FILE, SUMMARY_FILE, TAG_FILE, read_stored};
 use engine::diagnostic::{Diagnostic, Result};
 
 /// Files of a run under names of their own.
-const FILES: [&str; 8] =
-    [RUN_FILE, SUMMARY_FILE, POLICY_FILE, LOG_FILE, CURVE_FILE, PAGE_FILE, TAG_FILE, "disagreements.csv"];
+const FILES: [&str; 11] = [
+    RUN_FILE,
+    SUMMARY_FILE,
+    POLICY_FILE,
+    LOG_FILE,
+    CURVE_FILE,
+    PAGE_FILE,
+    TAG_FILE,
+    RESUMABLE,
+    CHECKPOINT_FILE,
+    STEPS_FILE,
+    DISAGREEMENTS_FILE,
+];
 /// What `engine rescore` writes into a folder of its own within the run's.
 const RESCORE: &str = "rescore-";
 const RESCORE_FILES: [&str; 3] = ["rescore.json", "policy-diff.svg", "policy-diff.png"];
@@ -25,6 +38,39 @@ pub fn remove_run(folder: &Path) -> Result<Vec<PathBuf>> {
     let mut kept = Vec::new();
     remove(folder, &is_of_a_run, &mut kept)?;
     Ok(kept)
+}
+
+/// Removes a folder of a run or a test in whose place another one stands now: its tag, what was scored of it anew and what
+/// somebody else put there moves to the new one, as far as there is no such file.
+///
+/// # Errors
+/// If something cannot be removed or moved.
+pub(super) fn retire(old: &Path, now: &Path) -> Result<()> {
+    let disk = |error| Box::new(Diagnostic::disk("remove the old", old, &error));
+    let move_on = |path: &Path| -> Result<()> {
+        let to = now.join(path.strip_prefix(old).unwrap_or(path));
+        if is_there(&to)? {
+            return Ok(());
+        }
+        to.parent().map_or(Ok(()), std::fs::create_dir_all).and_then(|()| std::fs::rename(path, &to)).map_err(disk)
+    };
+    if is_there(now)? {
+        for entry in std::fs::read_dir(old).map_err(disk)? {
+            let path = entry.map_err(disk)?.path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            if name == TAG_FILE || name.starts_with(RESCORE) {
+                move_on(&path)?;
+            }
+        }
+    }
+    let mut kept = Vec::new();
+    remove(old, &|name| is_of_a_run(name) || name == TEST_FILE || is_unfinished(name), &mut kept)?;
+    if kept.is_empty() || !is_there(now)? {
+        return Ok(());
+    }
+    kept.iter().try_for_each(|path| move_on(path))?;
+    // What is left are empty folders.
+    std::fs::remove_dir_all(old).map_err(disk)
 }
 
 /// Removes the files of a folder that are `own`, then the folder if it is empty.
@@ -84,6 +130,20 @@ mod tests {
         write(&run, &["step-7-before.png", "rescore-mine/rescore.json"]);
         assert_eq!(remove_run(&run).unwrap(), Vec::<PathBuf>::new());
         assert!(!run.exists());
+    }
+
+    #[test]
+    fn what_somebody_else_put_into_a_run_moves_to_the_run_that_replaces_it() {
+        let place = tempfile::tempdir().unwrap();
+        let (old, now) = (place.path().join(".1.x.part"), place.path().join("1"));
+        write(&old, &["run.toml", "log.bin", "test.json", ".log.bin.x.part", "7/run.toml"]);
+        write(&old, &["notes.md", "7/mine.txt", "tag.txt", "rescore-a/rescore.json"]);
+        write(&now, &["run.toml"]);
+        retire(&old, &now).unwrap();
+        for moved in ["notes.md", "7/mine.txt", "tag.txt", "rescore-a/rescore.json"] {
+            assert!(now.join(moved).exists(), "{moved}");
+        }
+        assert!(!old.exists() && !now.join("log.bin").exists());
     }
 
     #[test]
