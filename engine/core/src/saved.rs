@@ -161,7 +161,7 @@ impl Passing<'_> {
     /// A whole number.
     ///
     /// # Errors
-    /// As all that follow: if nothing is left, or what is there cannot be.
+    /// If nothing is left, or what is there cannot be.
     pub fn whole(&mut self, value: &mut u64) -> Passed {
         match self {
             Self::Out(saving) => saving.whole(*value),
@@ -171,7 +171,9 @@ impl Passing<'_> {
     }
 
     /// An index or a count.
-    #[allow(clippy::missing_errors_doc)]
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
     pub fn size(&mut self, value: &mut usize) -> Passed {
         let mut whole = *value as u64;
         self.whole(&mut whole)?;
@@ -180,7 +182,9 @@ impl Passing<'_> {
     }
 
     /// A whole number of 32 bits.
-    #[allow(clippy::missing_errors_doc)]
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
     pub fn small(&mut self, value: &mut u32) -> Passed {
         let mut whole = u64::from(*value);
         self.whole(&mut whole)?;
@@ -189,7 +193,9 @@ impl Passing<'_> {
     }
 
     /// A flag.
-    #[allow(clippy::missing_errors_doc)]
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
     pub fn flag(&mut self, value: &mut bool) -> Passed {
         let mut whole = u64::from(*value);
         self.whole(&mut whole)?;
@@ -202,7 +208,9 @@ impl Passing<'_> {
     }
 
     /// A number, bit for bit, infinite ones too.
-    #[allow(clippy::missing_errors_doc)]
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
     pub fn number(&mut self, value: &mut f64) -> Passed {
         let mut bits = value.to_bits();
         self.whole(&mut bits)?;
@@ -211,7 +219,9 @@ impl Passing<'_> {
     }
 
     /// A number of single precision, bit for bit.
-    #[allow(clippy::missing_errors_doc)]
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
     pub fn single(&mut self, value: &mut f32) -> Passed {
         let mut bits = value.to_bits();
         self.small(&mut bits)?;
@@ -220,13 +230,17 @@ impl Passing<'_> {
     }
 
     /// Numbers, one after the other.
-    #[allow(clippy::missing_errors_doc)]
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
     pub fn numbers<const N: usize>(&mut self, values: [&mut f64; N]) -> Passed {
         values.into_iter().try_for_each(|value| self.number(value))
     }
 
     /// Bytes; as many as there were.
-    #[allow(clippy::missing_errors_doc)]
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
     pub fn bytes(&mut self, bytes: &mut Vec<u8>) -> Passed {
         match self {
             Self::Out(saving) => saving.bytes(bytes),
@@ -236,19 +250,25 @@ impl Passing<'_> {
     }
 
     /// A place and a heading.
-    #[allow(clippy::missing_errors_doc)]
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
     pub fn pose(&mut self, pose: &mut Pose) -> Passed {
         self.numbers([&mut pose.x_m, &mut pose.y_m, &mut pose.yaw_rad])
     }
 
     /// Two speeds.
-    #[allow(clippy::missing_errors_doc)]
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
     pub fn twist(&mut self, twist: &mut Twist) -> Passed {
         self.numbers([&mut twist.linear_m_per_s, &mut twist.angular_rad_per_s])
     }
 
     /// Where a stream of random numbers stands.
-    #[allow(clippy::missing_errors_doc)]
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
     pub fn random(&mut self, random: &mut Random) -> Passed {
         match self {
             Self::Out(saving) => saving.random(random),
@@ -258,7 +278,9 @@ impl Passing<'_> {
     }
 
     /// As many things as there must be.
-    #[allow(clippy::missing_errors_doc)]
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
     pub fn all<T>(&mut self, things: &mut [T], mut each: impl FnMut(&mut Self, &mut T) -> Passed) -> Passed {
         let mut count = things.len();
         self.size(&mut count)?;
@@ -269,7 +291,9 @@ impl Passing<'_> {
     }
 
     /// As many things as there were; their room is kept.
-    #[allow(clippy::missing_errors_doc)]
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
     pub fn list<T: Default>(
         &mut self,
         things: &mut Vec<T>,
@@ -291,7 +315,9 @@ impl Passing<'_> {
     }
 
     /// A thing, or none.
-    #[allow(clippy::missing_errors_doc)]
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
     pub fn option<T: Default>(
         &mut self,
         thing: &mut Option<T>,

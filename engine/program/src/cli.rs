@@ -99,7 +99,7 @@ impl Command {
 }
 
 /// Steps from one checkpoint to the next.
-const CHECKPOINT_STEPS: &str = "500000";
+const CHECKPOINT_STEPS: &str = "200000";
 
 /// Exit status: 0 learned, 1 not good enough, 2 usage, 3 bad input file, 4 a limit stopped it, 6 files and disk, 130
 /// stopped by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP (what was learned is kept).

@@ -98,7 +98,7 @@ fn introduce(file: &mut File) -> IoResult<()> {
 }
 
 fn held(of: &Path, file: &mut File) -> Diagnostic {
-    let since = file.metadata().and_then(|data| data.modified()).map_or_else(|_| String::new(), |time| since(time));
+    let since = file.metadata().and_then(|data| data.modified()).map_or_else(|_| String::new(), since);
     let mut holder = Vec::new();
     drop(file.take(MOST_BYTES).read_to_end(&mut holder));
     let holder = String::from_utf8_lossy(&holder);

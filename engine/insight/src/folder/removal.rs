@@ -6,7 +6,7 @@ use super::pages::PAGE_FILE;
 use super::pictures::PICTURES;
 use super::test_folder::TEST_FILE;
 use super::{CURVE_FILE, DISAGREEMENTS_FILE};
-use crate::disk::{RESUMABLE, is_there, is_unfinished};
+use crate::disk::{Lock, RESUMABLE, is_there, is_unfinished};
 use crate::store::{CHECKPOINT_FILE, LOG_FILE, POLICY_FILE, RUN_FILE, STEPS_FILE, SUMMARY_FILE, TAG_FILE, read_stored};
 use engine::diagnostic::{Diagnostic, Result};
 
@@ -35,6 +35,7 @@ const RESCORE_FILES: [&str; 3] = ["rescore.json", "policy-diff.svg", "policy-dif
 /// `E-RUN-FILE` if the folder is no run; if a file cannot be removed.
 pub fn remove_run(folder: &Path) -> Result<Vec<PathBuf>> {
     read_stored(&folder.join(RUN_FILE))?;
+    let _lock = Lock::take(folder)?;
     let mut kept = Vec::new();
     remove(folder, &is_of_a_run, &mut kept)?;
     Ok(kept)
