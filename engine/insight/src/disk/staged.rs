@@ -88,7 +88,15 @@ impl Staged {
     ///
     /// # Errors
     /// `E-IO` if that fails; what stood there is then unchanged.
-    pub fn commit(mut self) -> Result<()> {
+    pub fn commit(self) -> Result<()> {
+        self.commit_then(|_| Ok(()))
+    }
+
+    /// Puts the folder into its place, and does something there while nobody else may.
+    ///
+    /// # Errors
+    /// As [`Staged::commit`], and what that fails with.
+    pub fn commit_then(mut self, after: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
         let disk = |error: std::io::Error| Box::new(Diagnostic::disk("write", &self.target, &error));
         sync(&self.folder).map_err(disk)?;
         let there = is_there(&self.target)?;
@@ -96,16 +104,27 @@ impl Staged {
             .map_err(disk)?;
         sync_folder(folder_of(&self.target)).map_err(disk)?;
         self.done = true;
-        if there { (self.retire)(&self.folder, &self.target) } else { Ok(()) }
+        if there {
+            // What could be gone on with of the old one is not of this one.
+            drop(fs::remove_file(self.folder.join(RESUMABLE)));
+        }
+        let after = after(&self.target);
+        let retired = if there { (self.retire)(&self.folder, &self.target) } else { Ok(()) };
+        after.and(retired)
     }
 }
 
 impl Drop for Staged {
     fn drop(&mut self) {
-        if !self.done && !self.folder.join(RESUMABLE).exists() {
+        if !self.done && !is_resumable(&self.folder) {
             drop(fs::remove_dir_all(&self.folder));
         }
     }
+}
+
+/// Whether a folder waits for whoever goes on with it; also if that cannot be told.
+fn is_resumable(folder: &Path) -> bool {
+    is_there(&folder.join(RESUMABLE)).unwrap_or(true)
 }
 
 fn refused(target: &Path, what: &str) -> Diagnostic {
@@ -134,7 +153,7 @@ fn sweep(target: &Path, retire: Retire) -> Option<PathBuf> {
         if !entry.file_type().is_ok_and(|kind| kind.is_dir()) {
             continue;
         }
-        if entry.path().join(RESUMABLE).exists() {
+        if is_resumable(&entry.path()) {
             resumable = if wanted == own { Some(entry.path()) } else { resumable };
             continue;
         }

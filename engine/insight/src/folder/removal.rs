@@ -41,51 +41,71 @@ pub fn remove_run(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(kept)
 }
 
-/// Removes a folder of a run or a test in whose place another one stands now: its tag, what was scored of it anew and what
-/// somebody else put there moves to the new one, as far as there is no such file.
+/// Removes a folder in whose place another one stands now. Of a run or a test its tag, what was scored of it anew and what somebody
+/// else put there moves to the new one; of any other folder all does.
 ///
 /// # Errors
 /// If something cannot be removed or moved.
 pub(super) fn retire(old: &Path, now: &Path) -> Result<()> {
-    let disk = |error| Box::new(Diagnostic::disk("remove the old", old, &error));
-    let move_on = |path: &Path| -> Result<()> {
-        let to = now.join(path.strip_prefix(old).unwrap_or(path));
-        if is_there(&to)? {
-            return Ok(());
-        }
-        to.parent().map_or(Ok(()), std::fs::create_dir_all).and_then(|()| std::fs::rename(path, &to)).map_err(disk)
-    };
-    if is_there(now)? {
-        for entry in std::fs::read_dir(old).map_err(disk)? {
-            let path = entry.map_err(disk)?.path();
-            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            if name == TAG_FILE || name.starts_with(RESCORE) {
-                move_on(&path)?;
+    let (stays, mut kept) = (is_there(now)?, Vec::new());
+    if is_there(&old.join(RUN_FILE))? || is_there(&old.join(TEST_FILE))? {
+        for path in entries(old)? {
+            let name = name_of(&path);
+            if stays && (name == TAG_FILE || name.starts_with(RESCORE)) {
+                move_on(&path, old, now)?;
             }
         }
+        remove(old, &|name| is_of_a_run(name) || name == TEST_FILE || is_unfinished(name), &mut kept)?;
+    } else {
+        // Folders named by numbers may be runs of their own here.
+        kept = entries(old)?;
     }
-    let mut kept = Vec::new();
-    remove(old, &|name| is_of_a_run(name) || name == TEST_FILE || is_unfinished(name), &mut kept)?;
-    if kept.is_empty() || !is_there(now)? {
+    if !stays && !kept.is_empty() {
         return Ok(());
     }
-    kept.iter().try_for_each(|path| move_on(path))?;
-    // What is left are empty folders.
-    std::fs::remove_dir_all(old).map_err(disk)
+    kept.iter().try_for_each(|path| move_on(path, old, now))?;
+    match std::fs::remove_dir_all(old) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(disk("remove the old", old, &error)),
+        _ => Ok(()),
+    }
+}
+
+/// Moves what stands in an old folder to the same place in the new one, under another name if there is such a file.
+fn move_on(path: &Path, old: &Path, now: &Path) -> Result<()> {
+    let wanted = now.join(path.strip_prefix(old).unwrap_or(path));
+    let (mut to, mut number) = (wanted.clone(), 0);
+    while is_there(&to)? {
+        number += 1;
+        to = wanted.with_file_name(format!("{}.old{number}", name_of(&wanted)));
+    }
+    let made = to.parent().map_or(Ok(()), std::fs::create_dir_all);
+    made.and_then(|()| std::fs::rename(path, &to)).map_err(|error| disk("move", path, &error))
+}
+
+fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+fn disk(what: &str, path: &Path, error: &std::io::Error) -> Box<Diagnostic> {
+    Box::new(Diagnostic::disk(what, path, error))
+}
+
+/// What stands in a folder, in the order of the names.
+fn entries(folder: &Path) -> Result<Vec<PathBuf>> {
+    let entries = std::fs::read_dir(folder).and_then(Iterator::collect::<std::io::Result<Vec<_>>>);
+    let entries = entries.map_err(|error| disk("read the folder", folder, &error))?;
+    let mut paths: Vec<PathBuf> = entries.iter().map(std::fs::DirEntry::path).collect();
+    paths.sort();
+    Ok(paths)
 }
 
 /// Removes the files of a folder that are `own`, then the folder if it is empty.
 fn remove(folder: &Path, own: &dyn Fn(&str) -> bool, kept: &mut Vec<PathBuf>) -> Result<()> {
-    let disk = |what: &str, path: &Path, error| Box::new(Diagnostic::disk(what, path, &error));
-    let entries = std::fs::read_dir(folder).and_then(Iterator::collect::<std::io::Result<Vec<_>>>);
-    let mut paths: Vec<PathBuf> =
-        entries.map_err(|error| disk("read the folder", folder, error))?.iter().map(std::fs::DirEntry::path).collect();
-    paths.sort();
     let before = kept.len();
-    for path in paths {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    for path in entries(folder)? {
+        let name = name_of(&path);
         if path.is_file() && !path.is_symlink() && own(&name) {
-            std::fs::remove_file(&path).map_err(|error| disk("remove", &path, error))?;
+            std::fs::remove_file(&path).map_err(|error| disk("remove", &path, &error))?;
         } else if path.is_dir() && !path.is_symlink() && name.starts_with(RESCORE) {
             remove(&path, &|name| RESCORE_FILES.contains(&name), kept)?;
         } else if path.is_dir() && !path.is_symlink() && name.parse::<u64>().is_ok() {
@@ -96,7 +116,7 @@ fn remove(folder: &Path, own: &dyn Fn(&str) -> bool, kept: &mut Vec<PathBuf>) ->
         }
     }
     if kept.len() == before {
-        std::fs::remove_dir(folder).map_err(|error| disk("remove", folder, error))?;
+        std::fs::remove_dir(folder).map_err(|error| disk("remove", folder, &error))?;
     }
     Ok(())
 }
@@ -145,6 +165,19 @@ mod tests {
             assert!(now.join(moved).exists(), "{moved}");
         }
         assert!(!old.exists() && !now.join("log.bin").exists());
+    }
+
+    #[test]
+    fn of_a_folder_that_is_no_run_everything_moves_and_nothing_is_lost() {
+        let place = tempfile::tempdir().unwrap();
+        let (old, now) = (place.path().join(".wall.x.part"), place.path().join("wall"));
+        write(&old, &["1/run.toml", "1/log.bin", "2/run.toml", "report.html"]);
+        write(&now, &["run.toml", "report.html"]);
+        retire(&old, &now).unwrap();
+        for moved in ["1/run.toml", "1/log.bin", "2/run.toml", "report.html", "report.html.old1"] {
+            assert!(now.join(moved).exists(), "{moved}");
+        }
+        assert!(!old.exists());
     }
 
     #[test]

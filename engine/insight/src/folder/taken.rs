@@ -24,7 +24,8 @@ impl Claim<'_> {
     pub(super) fn is_denied(self, folder: &Path) -> Result<bool> {
         let path = folder.join(RUN_FILE);
         if !is_there(&path)? {
-            return Ok(false);
+            // The folder of several runs is none of them.
+            return Ok(!seed_folders(folder).is_empty());
         }
         let one = is_there(&folder.join(LOG_FILE))?;
         let others = seed_folders(folder).into_iter().any(|(seed, _)| !self.seeds.contains(&seed) || !self.is_many());

@@ -96,26 +96,30 @@ impl RunFolder {
         self.marked.load(Ordering::Relaxed)
     }
 
-    /// Removes the checkpoints of a run that is done.
+    /// Puts the folder of a run that is done into its place, and removes its checkpoints there: should it be killed before that,
+    /// they serve.
     ///
     /// # Errors
-    /// If one cannot be removed.
-    pub fn forget_checkpoints(&self, seeds: &[u64]) -> Result<()> {
-        let mut files = vec![self.work.join(RESUMABLE)];
-        for seed in seeds {
-            let folder = if self.many { self.work.join(seed.to_string()) } else { self.work.clone() };
-            files.extend([CHECKPOINT_FILE, STEPS_FILE].map(|file| folder.join(file)));
-        }
-        for file in files {
-            match std::fs::remove_file(&file) {
-                Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                    return Diagnostic::disk("remove", &file, &error).fail();
-                }
-                _ => {}
-            }
-        }
-        Ok(())
+    /// As [`RunFolder::commit`], and if one cannot be removed.
+    pub fn commit_done(self, seeds: &[u64]) -> Result<()> {
+        let many = self.many;
+        self.staged.map_or(Ok(()), |staged| staged.commit_then(|place| forget_checkpoints(place, many, seeds)))
     }
+}
+
+fn forget_checkpoints(place: &Path, many: bool, seeds: &[u64]) -> Result<()> {
+    let folder = |seed: &u64| if many { place.join(seed.to_string()) } else { place.to_owned() };
+    let files = seeds.iter().flat_map(|seed| [CHECKPOINT_FILE, STEPS_FILE].map(|file| folder(seed).join(file)));
+    // The one that says that there are others goes last.
+    for file in files.chain([place.join(RESUMABLE)]) {
+        match std::fs::remove_file(&file) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Diagnostic::disk("remove", &file, &error).fail();
+            }
+            _ => {}
+        }
+    }
+    Ok(())
 }
 
 /// Copies what was kept of a run that was stopped, and so stands in its place.
@@ -128,22 +132,25 @@ fn take_from_place(place: &Path, work: &Path) -> Result<()> {
         };
         return Err(nothing(place, what));
     }
-    let copy = |from: &Path, to: &Path| -> Result<()> {
-        for file in [RESUMABLE, RUN_FILE, CHECKPOINT_FILE, STEPS_FILE] {
+    let copy = |from: &Path, to: &Path, files: &[&str]| -> Result<()> {
+        for file in files {
             if is_there(&from.join(file))? {
                 let copied = std::fs::copy(from.join(file), to.join(file));
-                copied.map_err(|error| Diagnostic::disk("copy", &from.join(file), &error))?;
+                let synced = copied.and_then(|_| std::fs::File::open(to.join(file))?.sync_all());
+                synced.map_err(|error| Diagnostic::disk("copy", &from.join(file), &error))?;
             }
         }
         Ok(())
     };
-    copy(place, work)?;
+    let of_seed = [RUN_FILE, STEPS_FILE, CHECKPOINT_FILE];
+    copy(place, work, &of_seed)?;
     for (seed, folder) in crate::store::seed_folders(place) {
         let to = work.join(seed.to_string());
         create_folder(&to)?;
-        copy(&folder, &to)?;
+        copy(&folder, &to, &of_seed)?;
     }
-    Ok(())
+    // Last: until it is there, what was copied is nothing to go on with.
+    copy(place, work, &[RESUMABLE])
 }
 
 fn nothing(place: &Path, what: &str) -> Box<Diagnostic> {

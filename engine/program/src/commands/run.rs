@@ -57,11 +57,11 @@ pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::resul
     let checked = if arguments.check { check::beside_a_run(&plan, threads, &stop.flag, console) } else { None };
     folder.write(&plan, &results, checked.as_ref())?;
     let (stopped, written) = (stop.status(), folder.path().to_owned());
-    if stopped.is_none() {
-        folder.forget_checkpoints(&seeds)?;
-    }
     let resumable = stopped.is_some() && folder.can_be_resumed();
-    folder.commit()?;
+    match stopped {
+        Some(_) => folder.commit()?,
+        None => folder.commit_done(&seeds)?,
+    }
     if let (Some(path), [SeedResult { log: Some(log), .. }]) = (&arguments.record, results.as_slice()) {
         record_run(arguments.record_every, seeds[0], &plan, log, path, console)?;
     }
