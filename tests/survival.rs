@@ -95,7 +95,7 @@ fn a_run_that_is_killed_again_and_again_ends_as_one_that_never_was() {
         (milliseconds, kills) = (milliseconds * 7 / 5, kills + 1);
         if !bench.path().join("it").exists() {
             // Nothing stands there that any command could take for a run.
-            for command in [&["test", "it"][..], &["replay", "it"], &["explain", "it", "10"]] {
+            for command in [&["test", "it"][..], &["replay", "it"], &["explain", "it", "--step", "10"]] {
                 assert_eq!(bench.engine(command).status.code(), Some(7), "{command:?}");
             }
         }

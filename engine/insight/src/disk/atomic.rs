@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use super::{PART, folder_of, name_of, sync_folder};
+use super::{PART, folder_of, name_of, plain, sync_folder};
 use engine::diagnostic::{Diagnostic, Result};
 
 /// Writes `bytes` to a new file beside `path`, and renames it over `path` when they are on the disk.
@@ -21,8 +21,7 @@ fn try_write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     // As any new file: what the user's mask leaves.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    // Its error has a path of its own, where the user's stands already.
-    let mut part = builder.tempfile_in(folder).map_err(|error| std::io::Error::from(error.kind()))?;
+    let mut part = builder.tempfile_in(folder).map_err(|error| plain(&error))?;
     part.write_all(bytes)?;
     part.as_file().sync_all()?;
     part.persist(path).map_err(|error| error.error)?;

@@ -47,6 +47,12 @@ pub(crate) fn is_unfinished(name: &str) -> bool {
     wanted_name(name).is_some()
 }
 
+/// An error of whoever makes files of random names, without the path that it ends with: the user's stands in the message already.
+fn plain(error: &std::io::Error) -> std::io::Error {
+    let text = error.to_string();
+    std::io::Error::new(error.kind(), text.split(" at path ").next().unwrap_or_default())
+}
+
 /// Makes the names in a folder last through a power cut.
 fn sync_folder(folder: &Path) -> std::io::Result<()> {
     // Elsewhere a folder cannot be opened.

@@ -5,7 +5,7 @@ use std::io::Result as IoResult;
 use std::path::{Path, PathBuf};
 
 use super::lock::Lock;
-use super::{PART, folder_of, is_there, name_of, sync_folder, wanted_name};
+use super::{PART, folder_of, is_there, name_of, plain, sync_folder, wanted_name};
 use engine::diagnostic::{Diagnostic, Result, printable};
 
 /// A folder that is not whole and holds this file waits for whoever goes on with it, and is not swept.
@@ -139,8 +139,9 @@ fn make(parent: &Path, name: &str) -> IoResult<PathBuf> {
     builder.prefix(&prefix).suffix(PART);
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
-    let made = builder.tempdir_in(parent).map_err(|error| std::io::Error::from(error.kind()))?;
-    Ok(made.keep())
+    let made = builder.tempdir_in(parent).map_err(|error| plain(&error))?.keep();
+    // As the user has written the place.
+    Ok(parent.join(made.file_name().unwrap_or_default()))
 }
 
 /// Removes what killed commands left in a folder, of `target` and of whatever else nobody writes to now. Of one that cannot be
