@@ -20,14 +20,15 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("script", &["judge", "verdict"]),
     ("robot", &["world", "sensors"]),
     ("experiment", &["world", "sensors", "filter", "state", "learner", "judge", "verdict", "script", "robot"]),
-    ("store", &[]),
+    ("disk", &[]),
+    ("store", &["disk"]),
     ("lint", &[]),
-    ("report", &[]),
+    ("report", &["disk"]),
     ("page", &["lint", "report"]),
     ("record", &[]),
-    ("folder", &["store", "lint", "report", "page"]),
+    ("folder", &["disk", "store", "lint", "report", "page"]),
     ("compare", &["store", "report"]),
-    ("shelf", &["store", "report"]),
+    ("shelf", &["disk", "store"]),
 ];
 const SHARED: &[&str] =
     &["allowed", "geometry", "random", "saved", "settings", "diagnostic", "digest", "outcome", "stats"];

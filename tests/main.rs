@@ -84,6 +84,8 @@ mod run_folder;
 mod shipped;
 /// What people stumbled over: told where it stands, with what to type next.
 mod stumbles;
+/// Runs that are killed, stopped, doubled or refused by the disk: nothing is lost, and nothing lies.
+mod survival;
 /// The live view in the terminal: its screen, its keys, and itself in a pseudo terminal.
 #[cfg(feature = "tui")]
 mod terminal;

@@ -44,6 +44,51 @@ pub(super) fn an_unsigned_pack_is_refused_unless_that_is_said() {
 }
 
 #[test]
+pub(super) fn a_key_that_is_revoked_stops_what_is_installed_and_no_fault_of_the_disk_gives_it_back() {
+    let bench = Bench::new();
+    let file = signed_pack(&bench, "ada/short");
+    bench.ok(&["pack", "install", &file]);
+    let run = &["run", "ada/short", "--out", "out", "--force"][..];
+    assert!(matches!(bench.engine(run).status.code(), Some(0 | 1)));
+    bench.ok(&["pack", "trust", "--revoke", "--key", "ada.pub"]);
+    for command in [run, &["test", "ada/short"], &["check", "ada/short"]] {
+        refused(&bench, command, "E-TRUST-REVOKED");
+    }
+    // A list that cannot be read is not an empty one.
+    let list = bench.path().join(".config/trust.toml");
+    let before = std::fs::read(&list).unwrap();
+    std::fs::remove_file(&list).unwrap();
+    std::fs::create_dir(&list).unwrap();
+    bench.ok(&["pack", "keygen", "carl", "--no-password"]);
+    for command in [run, &["pack", "trust", "carl", "--key", "carl.pub"]] {
+        assert!(!bench.engine(command).status.success(), "{command:?}");
+    }
+    std::fs::remove_dir(&list).unwrap();
+    std::fs::write(&list, before).unwrap();
+    refused(&bench, run, "E-TRUST-REVOKED");
+}
+
+#[test]
+pub(super) fn of_two_that_change_trust_or_pins_at_once_one_is_told_who_does() {
+    let bench = Bench::new();
+    let file = signed_pack(&bench, "ada/short");
+    let held = |of: &str| insight::disk::Lock::take(&bench.path().join(of)).unwrap();
+    for (of, command) in [
+        (".config/trust.toml", &["pack", "trust", "--revoke", "--key", "ada.pub"][..]),
+        ("engine.lock", &["pack", "install", &file]),
+        (".data/engine.lock", &["pack", "install", &file]),
+        (".data/store", &["pack", "install", &file]),
+    ] {
+        std::fs::create_dir_all(bench.path().join(".data")).unwrap();
+        let lock = held(of);
+        let text = bench.failure(command);
+        assert!(text.starts_with("exit status 6\nerror[E-LOCKED]"), "{of}: {text}");
+        drop(lock);
+    }
+    bench.ok(&["pack", "install", &file]);
+}
+
+#[test]
 pub(super) fn unknown_foreign_changed_and_revoked_keys_are_refused() {
     let bench = Bench::new();
     let file = signed_pack(&bench, "ada/short");

@@ -1,5 +1,6 @@
 //! How an attempt ends: what a script may say of it, and what that means.
 
+use crate::saved::{Passed, Passing};
 use crate::settings::RecoverTo;
 use std::iter::Sum;
 
@@ -23,6 +24,22 @@ pub enum Destination {
     Word(RecoverTo),
     /// At the world's start with this index.
     Start(usize),
+}
+
+/// Passes where the next attempt begins.
+pub(crate) fn pass_destination(by: &mut Passing<'_>, to: &mut Option<Destination>) -> Passed {
+    let words = RecoverTo::ALL;
+    let mut number = match *to {
+        None => 0,
+        Some(Destination::Word(word)) => 1 + words.iter().position(|own| *own == word).unwrap_or(0),
+        Some(Destination::Start(start)) => 1 + words.len() + start,
+    };
+    by.size(&mut number)?;
+    *to = number.checked_sub(1).map(|place| match words.get(place) {
+        Some(word) => Destination::Word(*word),
+        None => Destination::Start(place - words.len()),
+    });
+    Ok(())
 }
 
 impl Destination {

@@ -1,7 +1,9 @@
 //! State as bytes: what a checkpoint keeps of a learner, little-endian, one value after the other.
 //!
+//! [`Passing`] is for state that is written and read by one and the same list, so that the two cannot differ.
 //! Whoever saves knows what it has written, so there are no names and no lengths but those of lists.
 
+use crate::geometry::{Pose, Twist};
 use crate::random::Random;
 
 /// Bytes that are being written.
@@ -13,6 +15,12 @@ impl Saving {
     #[must_use]
     pub fn into_bytes(self) -> Vec<u8> {
         self.0
+    }
+
+    /// Bytes, with how many they are.
+    pub fn bytes(&mut self, bytes: &[u8]) {
+        self.whole(bytes.len() as u64);
+        self.0.extend_from_slice(bytes);
     }
 
     /// A whole number.
@@ -78,6 +86,17 @@ impl<'a> Loading<'a> {
         Ok(u64::from_le_bytes(*bytes))
     }
 
+    /// Bytes, as many as were written.
+    ///
+    /// # Errors
+    /// If fewer are left.
+    pub fn bytes(&mut self) -> Result<&'a [u8], Unfit> {
+        let length = usize::try_from(self.whole()?).map_err(|_| Unfit)?;
+        let (bytes, rest) = self.0.split_at_checked(length).ok_or(Unfit)?;
+        self.0 = rest;
+        Ok(bytes)
+    }
+
     /// A whole number below a bound, as an index or a count.
     ///
     /// # Errors
@@ -126,6 +145,194 @@ impl<'a> Loading<'a> {
     }
 }
 
+/// State on its way into bytes, or out of them: whoever has some passes it in the same order both ways.
+#[derive(Debug)]
+pub enum Passing<'a> {
+    /// It is written.
+    Out(Saving),
+    /// It becomes what was written.
+    In(Loading<'a>),
+}
+
+/// Whether what was written fits; writing always does.
+pub type Passed = Result<(), Unfit>;
+
+impl Passing<'_> {
+    /// A whole number.
+    ///
+    /// # Errors
+    /// If nothing is left, or what is there cannot be.
+    pub fn whole(&mut self, value: &mut u64) -> Passed {
+        match self {
+            Self::Out(saving) => saving.whole(*value),
+            Self::In(loading) => *value = loading.whole()?,
+        }
+        Ok(())
+    }
+
+    /// An index or a count.
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
+    pub fn size(&mut self, value: &mut usize) -> Passed {
+        let mut whole = *value as u64;
+        self.whole(&mut whole)?;
+        *value = usize::try_from(whole).map_err(|_| Unfit)?;
+        Ok(())
+    }
+
+    /// A whole number of 32 bits.
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
+    pub fn small(&mut self, value: &mut u32) -> Passed {
+        let mut whole = u64::from(*value);
+        self.whole(&mut whole)?;
+        *value = u32::try_from(whole).map_err(|_| Unfit)?;
+        Ok(())
+    }
+
+    /// A flag.
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
+    pub fn flag(&mut self, value: &mut bool) -> Passed {
+        let mut whole = u64::from(*value);
+        self.whole(&mut whole)?;
+        *value = match whole {
+            0 => false,
+            1 => true,
+            _ => return Err(Unfit),
+        };
+        Ok(())
+    }
+
+    /// A number, bit for bit, infinite ones too.
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
+    pub fn number(&mut self, value: &mut f64) -> Passed {
+        let mut bits = value.to_bits();
+        self.whole(&mut bits)?;
+        *value = f64::from_bits(bits);
+        Ok(())
+    }
+
+    /// A number of single precision, bit for bit.
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
+    pub fn single(&mut self, value: &mut f32) -> Passed {
+        let mut bits = value.to_bits();
+        self.small(&mut bits)?;
+        *value = f32::from_bits(bits);
+        Ok(())
+    }
+
+    /// Numbers, one after the other.
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
+    pub fn numbers<const N: usize>(&mut self, values: [&mut f64; N]) -> Passed {
+        values.into_iter().try_for_each(|value| self.number(value))
+    }
+
+    /// Bytes; as many as there were.
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
+    pub fn bytes(&mut self, bytes: &mut Vec<u8>) -> Passed {
+        match self {
+            Self::Out(saving) => saving.bytes(bytes),
+            Self::In(loading) => *bytes = loading.bytes()?.to_vec(),
+        }
+        Ok(())
+    }
+
+    /// A place and a heading.
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
+    pub fn pose(&mut self, pose: &mut Pose) -> Passed {
+        self.numbers([&mut pose.x_m, &mut pose.y_m, &mut pose.yaw_rad])
+    }
+
+    /// Two speeds.
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
+    pub fn twist(&mut self, twist: &mut Twist) -> Passed {
+        self.numbers([&mut twist.linear_m_per_s, &mut twist.angular_rad_per_s])
+    }
+
+    /// Where a stream of random numbers stands.
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
+    pub fn random(&mut self, random: &mut Random) -> Passed {
+        match self {
+            Self::Out(saving) => saving.random(random),
+            Self::In(loading) => loading.random(random)?,
+        }
+        Ok(())
+    }
+
+    /// As many things as there must be.
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
+    pub fn all<T>(&mut self, things: &mut [T], mut each: impl FnMut(&mut Self, &mut T) -> Passed) -> Passed {
+        let mut count = things.len();
+        self.size(&mut count)?;
+        if count != things.len() {
+            return Err(Unfit);
+        }
+        things.iter_mut().try_for_each(|thing| each(self, thing))
+    }
+
+    /// As many things as there were; their room is kept.
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
+    pub fn list<T: Default>(
+        &mut self,
+        things: &mut Vec<T>,
+        mut each: impl FnMut(&mut Self, &mut T) -> Passed,
+    ) -> Passed {
+        let mut count = things.len();
+        self.size(&mut count)?;
+        if let Self::In(_) = self {
+            things.truncate(count);
+        }
+        things.iter_mut().try_for_each(|thing| each(self, thing))?;
+        // One by one: a count that is wrong soon meets the end of the bytes.
+        for _ in things.len()..count {
+            let mut thing = T::default();
+            each(self, &mut thing)?;
+            things.push(thing);
+        }
+        Ok(())
+    }
+
+    /// A thing, or none.
+    ///
+    /// # Errors
+    /// As [`Passing::whole`].
+    pub fn option<T: Default>(
+        &mut self,
+        thing: &mut Option<T>,
+        mut each: impl FnMut(&mut Self, &mut T) -> Passed,
+    ) -> Passed {
+        let mut is_there = thing.is_some();
+        self.flag(&mut is_there)?;
+        if !is_there {
+            *thing = None;
+            return Ok(());
+        }
+        each(self, thing.get_or_insert_default())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -148,6 +355,26 @@ mod tests {
         loading.random(&mut again).unwrap();
         assert_eq!(again.unit(), random.unit());
         assert_eq!(loading.end(), Ok(()));
+    }
+
+    #[test]
+    fn what_is_passed_out_comes_in_as_it_was() {
+        let pass = |by: &mut Passing<'_>, numbers: &mut Vec<f64>, thing: &mut Option<u64>, flag: &mut bool| {
+            by.list(numbers, Passing::number)?;
+            by.option(thing, Passing::whole)?;
+            by.flag(flag)
+        };
+        let (mut numbers, mut thing, mut flag) = (vec![0.5, f64::INFINITY], Some(7), true);
+        let mut out = Passing::Out(Saving::default());
+        pass(&mut out, &mut numbers, &mut thing, &mut flag).unwrap();
+        let Passing::Out(saving) = out else { panic!() };
+        let bytes = saving.into_bytes();
+        let (mut others, mut none, mut unset) = (vec![1.0; 5], None, false);
+        let mut into = Passing::In(Loading::new(&bytes));
+        pass(&mut into, &mut others, &mut none, &mut unset).unwrap();
+        assert_eq!((others, none, unset), (numbers, thing, flag));
+        let mut cut = Passing::In(Loading::new(&bytes[..bytes.len() - 1]));
+        assert_eq!(pass(&mut cut, &mut Vec::new(), &mut None, &mut false), Err(Unfit));
     }
 
     #[test]

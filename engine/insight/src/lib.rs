@@ -4,7 +4,8 @@
 //! |---|---|
 //! | [`store`] | `run.toml`, `policy.toml` and `log.bin`, written and read |
 //! | [`lint`] | mistakes in a behaviour, and ways to cheat its reward, found before it is learned |
-//! | [`report`] | pictures, CSV, files written whole or not at all |
+//! | [`disk`] | files and folders that are whole or absent, their locks, their reader |
+//! | [`report`] | pictures, CSV |
 //! | [`page`] | a run as one document of data, and the HTML that shows it |
 //! | [`folder`] | a run's folder, written |
 //! | [`compare`] | runs beside one another |
@@ -14,6 +15,7 @@
 //! | [`words`] | numbers as people read them |
 
 pub mod compare;
+pub mod disk;
 pub mod folder;
 pub mod lint;
 mod markup;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-use crate::report::write_atomic;
+use crate::disk::{read_file, write_atomic};
 use crate::store::{RUN_FILE, SUMMARY_FILE, TAG_FILE, read_stored};
 use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::experiment::{Spread, Summary};
@@ -11,6 +11,8 @@ use serde::{Serialize, Serializer};
 
 /// A tag is a word or a few.
 const MOST_TAG: usize = 60;
+/// The longest file of a tag that is read, bytes.
+const MOST_TAG_BYTES: u64 = 1000;
 /// A part of a run stands in it or one folder below.
 const MOST_ABOVE: usize = 2;
 /// Runs stand in `runs/NAME/SEED`; deeper than this nobody looks.
@@ -100,7 +102,8 @@ impl ShelvedRun {
         let at = folder.join(RUN_FILE);
         let written = std::fs::metadata(&at).and_then(|meta| meta.modified());
         let written = written.map_err(|error| Box::new(Diagnostic::disk("read", &at, &error)))?;
-        let tag = std::fs::read_to_string(folder.join(TAG_FILE)).ok().map(|tag| tag.trim().to_owned());
+        let tag = read_file(&folder.join(TAG_FILE), MOST_TAG_BYTES).ok();
+        let tag = tag.map(|tag| String::from_utf8_lossy(&tag).trim().to_owned());
         let run = Self {
             folder: folder.to_owned(),
             written,

@@ -71,7 +71,7 @@ impl Author {
     /// If it is missing, or wrong: at its place.
     pub fn load(folder: &Path) -> Result<Self> {
         let path = folder.join(AUTHOR_FILE);
-        if !path.exists() {
+        if !insight::disk::is_there(&path)? {
             let shown = printable(&folder.display().to_string());
             let message = format!("'{shown}' is no pack's folder: it has no '{AUTHOR_FILE}'");
             return malformed("E-PACK-FOLDER", message).help("make one with: engine pack new NAME").fail();

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::manifest::toml_error;
 use super::{Digest, MAX_MANIFEST_BYTES, Pack, PackName, Signer, bundle, distrusted, malformed};
 use engine::diagnostic::{Diagnostic, Result, SourceText, nearest_name, printable};
-use insight::report::write_atomic;
+use insight::disk::{is_there, write_atomic};
 
 /// The format of the file.
 const FORMAT: u32 = 1;
@@ -70,7 +70,7 @@ impl Lock {
     /// # Errors
     /// If the file is there but cannot be read, or is wrong.
     pub fn load(path: &Path) -> Result<Self> {
-        if !path.exists() {
+        if !is_there(path)? {
             return Ok(Self::default());
         }
         let wrong = |what: &str| {

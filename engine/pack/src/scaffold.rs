@@ -16,7 +16,7 @@ use engine::experiment::{Overrides, Plan};
 use engine::filter::{Catalogue, Form, Sources};
 use engine::settings::Edition;
 use engine::world::{FamilyRange, Layout};
-use insight::report::write_atomic;
+use insight::disk::write_atomic;
 use insight::store::with_policies;
 
 const SCRIPT: &str = include_str!("../../../scripts/wall.rhai");

@@ -8,6 +8,10 @@ use super::bundle::read_limited;
 use super::manifest::{FILE, Manifest};
 use super::{Digest, Locked, MAX_MANIFEST_BYTES, MAX_PACK_BYTES, Pack, Signature, archive, distrusted};
 use engine::diagnostic::{Diagnostic, Result, SourceText};
+use insight::disk::{Lock, is_there, write_atomic};
+
+/// How the names of folders begin that are not whole yet.
+const STAGING: &str = ".staging-";
 
 /// The folder of installed packs.
 #[derive(Debug, Clone)]
@@ -34,28 +38,23 @@ impl Shelf {
     /// If a file cannot be written; nothing is left of the pack then.
     pub fn put(&self, pack: &Pack, signature: Option<&Signature>) -> Result<()> {
         let folder = self.folder(pack.content());
-        if !folder.exists() {
-            let staging = self.root.join(format!(".staging-{}-{}", pack.content().short(), std::process::id()));
-            // One of a process that was killed: its files are read-only, its folders are not.
-            if staging.exists() {
-                discard(&staging)?;
-            }
+        create(&self.root)?;
+        let _lock = Lock::take(&self.root)?;
+        self.sweep();
+        if !is_there(&folder)? {
+            let staging = tempfile::Builder::new().prefix(STAGING).tempdir_in(&self.root);
+            let staging = staging.map_err(|error| Box::new(Diagnostic::disk("write", &folder, &error)))?.keep();
             let written = stage(&staging, pack).and_then(|()| {
                 fs::rename(&staging, &folder).map_err(|error| Box::new(Diagnostic::disk("write", &folder, &error)))
             });
             if let Err(error) = written {
                 // The first error is the one to tell.
                 drop(discard(&staging));
-                // Another process may have put the same pack there first: then it is there.
-                if !folder.exists() {
-                    return Err(error);
-                }
+                return Err(error);
             }
         }
         match signature {
-            Some(signature) => {
-                insight::report::write_atomic(&self.signature_path(pack.content()), signature.text().as_bytes())
-            }
+            Some(signature) => write_atomic(&self.signature_path(pack.content()), signature.text().as_bytes()),
             None => Ok(()),
         }
     }
@@ -67,7 +66,7 @@ impl Shelf {
     pub fn get(&self, locked: &Locked) -> Result<Pack> {
         let folder = self.folder(locked.content);
         let title = format!("{} {}", locked.name, locked.version);
-        if !folder.join(FILE).exists() {
+        if !is_there(&folder.join(FILE))? {
             let message = format!("{title} is locked, but not installed on this machine");
             let help =
                 format!("install it again: engine pack install {}-{}.pack", locked.name.file_stem(), locked.version);
@@ -107,7 +106,7 @@ impl Shelf {
     /// If there is one that cannot be read.
     pub fn signature(&self, content: Digest) -> Result<Option<Signature>> {
         let path = self.signature_path(content);
-        if !path.exists() {
+        if !is_there(&path)? {
             return Ok(None);
         }
         let bytes = read_limited(&path, MAX_MANIFEST_BYTES)?;
@@ -119,12 +118,23 @@ impl Shelf {
     /// # Errors
     /// If it cannot be removed.
     pub fn remove(&self, content: Digest) -> Result<()> {
+        create(&self.root)?;
+        let _lock = Lock::take(&self.root)?;
         let signature = self.signature_path(content);
-        if signature.exists() {
+        if is_there(&signature)? {
             fs::remove_file(&signature).map_err(|error| Box::new(Diagnostic::disk("remove", &signature, &error)))?;
         }
         let folder = self.folder(content);
-        if folder.exists() { discard(&folder) } else { Ok(()) }
+        if is_there(&folder)? { discard(&folder) } else { Ok(()) }
+    }
+
+    /// Removes what killed installations left: their files are read-only, their folders are not.
+    fn sweep(&self) {
+        for entry in fs::read_dir(&self.root).into_iter().flatten().flatten() {
+            if entry.file_name().to_string_lossy().starts_with(STAGING) {
+                drop(discard(&entry.path()));
+            }
+        }
     }
 
     fn signature_path(&self, content: Digest) -> PathBuf {
@@ -146,6 +156,10 @@ fn stage(staging: &Path, pack: &Pack) -> Result<()> {
         file.set_permissions(permissions).map_err(disk)?;
     }
     Ok(())
+}
+
+fn create(folder: &Path) -> Result<()> {
+    fs::create_dir_all(folder).map_err(|error| Box::new(Diagnostic::disk("create the folder", folder, &error)))
 }
 
 fn discard(folder: &Path) -> Result<()> {

@@ -8,7 +8,7 @@ use super::manifest::toml_error;
 use super::name::check_part;
 use super::{MAX_MANIFEST_BYTES, Pack, Signature, bundle, distrusted, key_id};
 use engine::diagnostic::{Diagnostic, Result, SourceText, printable};
-use insight::report::write_atomic;
+use insight::disk::{is_there, write_atomic};
 
 /// The format of `trust.toml`.
 const FORMAT: u32 = 1;
@@ -78,7 +78,7 @@ impl TrustStore {
     /// # Errors
     /// If the file is there but cannot be read, or is wrong.
     pub fn load(path: &Path) -> Result<Self> {
-        if !path.exists() {
+        if !is_there(path)? {
             return Ok(Self::default());
         }
         let wrong =

@@ -98,14 +98,19 @@ impl Command {
     }
 }
 
+/// Steps from one checkpoint to the next.
+const CHECKPOINT_STEPS: &str = "200000";
+
 /// Exit status: 0 learned, 1 not good enough, 2 usage, 3 bad input file, 4 a limit stopped it, 6 files and disk, 130
-/// stopped by Ctrl-C (what was learned is kept).
+/// stopped by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP (what was learned is kept).
 #[derive(Debug, Args)]
 #[command(after_help = "Exit status: 0 learned; 1 not good enough; 2 usage; 3 bad input file; 4 a limit stopped it; \
-                        5 refused for trust; 6 files and disk; 130 stopped by Ctrl-C, with what was learned kept.")]
+                        5 refused for trust; 6 files and disk; 7 the checkpoint does not fit; 130 stopped by Ctrl-C, 143 \
+                        by SIGTERM, 129 by SIGHUP, with what was learned kept for --resume.")]
 pub(crate) struct RunArguments {
     /// The behaviour: a script such as scripts/wall.rhai, a .pack file, a pack's folder, or an installed pack's name
-    pub(crate) behaviour: PathBuf,
+    #[arg(required_unless_present = "resume")]
+    pub(crate) behaviour: Option<PathBuf>,
     /// The first seed
     #[arg(long, default_value = "1", value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
@@ -127,6 +132,15 @@ pub(crate) struct RunArguments {
     /// and actions; of a run of many seeds, each seed from its own
     #[arg(long, value_name = "RUN")]
     pub(crate) from: Option<PathBuf>,
+    /// Go on from a step of a finished run under this behaviour, which may have other rules, and show the first step that differs
+    #[arg(long, value_name = "RUN@STEP", conflicts_with_all = ["from", "seed", "seeds"])]
+    pub(crate) branch: Option<String>,
+    /// Keep a checkpoint after so many steps each, from which --resume goes on
+    #[arg(long, default_value = CHECKPOINT_STEPS, value_parser = count, allow_hyphen_values = true, value_name = "N")]
+    pub(crate) checkpoint: u64,
+    /// Go on with a run that was killed or stopped, as if nothing had happened: the folder that it was to have
+    #[arg(long, value_name = "RUN", conflicts_with_all = ["behaviour", "seed", "seeds", "steps", "world", "set", "from", "branch", "out", "force"])]
+    pub(crate) resume: Option<PathBuf>,
     /// The folder for the results [default: runs/BEHAVIOUR/SEED]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,

@@ -1,6 +1,7 @@
 //! One step of the robot, the order of which is the order of the folders: act, sense, filter, state, judge.
 
 mod asked;
+mod passed;
 mod shown;
 mod witness;
 

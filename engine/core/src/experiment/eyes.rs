@@ -5,6 +5,7 @@ use crate::diagnostic::Result;
 use crate::filter::Chain;
 use crate::geometry::Twist;
 use crate::judge::{LineFacts, Look, PatchFacts, ViewFacts};
+use crate::saved::{Passed, Passing, Unfit};
 use crate::sensors::CameraRays;
 use crate::sensors::observation::Observation;
 use crate::settings::{CameraSettings, Settings, UNNAMED_VIEW, ViewSettings};
@@ -188,6 +189,17 @@ impl Eyes {
             rest = others;
         }
         Ok(())
+    }
+
+    /// What goes on from image to image.
+    pub(super) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        by.all(&mut self.grids, |by, grid| grid.pass(by))?;
+        if !self.keep {
+            return Ok(());
+        }
+        let mut kept = self.kept().map_err(|_| Unfit)?;
+        by.bytes(&mut kept)?;
+        if matches!(by, Passing::In(_)) { self.go_on_from(&kept).map_err(|_| Unfit) } else { Ok(()) }
     }
 
     /// What the filters keep, in words: `floor`, and what it says.

@@ -1,5 +1,7 @@
 //! Learning: the loop with a learner in it, and all that is kept of it.
 
+mod passed;
+
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -8,7 +10,7 @@ use super::digest::StateHash;
 use super::legs::with_gone;
 use super::relay::UsedDrivers;
 use super::trail::{Recorder, Trail};
-use super::{Cycle, Ledger, Observer, Phase, Plan, Step, Tally, WINDOW_STEPS, drive};
+use super::{Checkpoints, Cycle, Ledger, Observer, Phase, Plan, Step, Tally, WINDOW_STEPS, drive};
 use crate::diagnostic::{Diagnostic, Result};
 use crate::learner::{Carry, Learner, Policy, Rejudged, ShippedLearner};
 use crate::robot::{Robot, SimulatedRobot};
@@ -96,7 +98,25 @@ pub fn learn_into(
     report: &(dyn Fn(Progress) + Sync),
     ledger: &mut Ledger,
 ) -> std::result::Result<Learned, Box<BrokenOff>> {
-    let mut learning = learn_through(plan, seed, None, stop, report, ledger)?;
+    learn_kept(plan, seed, stop, report, ledger, Checkpoints::NONE)
+}
+
+/// Learns, keeps every step in a ledger, and from time to time all that goes on.
+///
+/// # Errors
+/// As [`learn`]; `E-CHECKPOINT` if what it is to go on from does not fit, and what keeping it fails with.
+pub fn learn_kept(
+    plan: &Plan,
+    seed: u64,
+    stop: &AtomicBool,
+    report: &(dyn Fn(Progress) + Sync),
+    ledger: &mut Ledger,
+    checkpoints: Checkpoints<'_>,
+) -> std::result::Result<Learned, Box<BrokenOff>> {
+    let mut learning = match checkpoints.of(plan) {
+        Some(checkpoints) => checkpoints.learn(plan, seed, stop, report, ledger)?,
+        None => learn_through(plan, seed, None, stop, report, ledger)?,
+    };
     let learned = learning.finish();
     match learning.fault {
         Some(error) => Err(Box::new(BrokenOff { error, learned: Some(learned) })),

@@ -3,7 +3,7 @@
 use std::sync::atomic::AtomicBool;
 
 use super::base_lines::{Ahead, base_lines};
-use super::{BrokenOff, Decider, Learned, Plan, Progress, RunLog, Summary, TestRun, learn_into};
+use super::{BrokenOff, Checkpoints, Decider, Learned, Plan, Progress, RunLog, Summary, TestRun, learn_kept};
 use crate::verdict::BaseLines;
 
 /// What one seed leaves.
@@ -29,29 +29,46 @@ pub fn run_seed(
     report: &(dyn Fn(Progress) + Sync),
     log: &mut RunLog,
 ) -> Result<SeedRun, Box<BrokenOff>> {
-    let (learned, tested) = learn_and_test(plan, seed, stop, report, log)?;
+    run_seed_kept(plan, seed, stop, report, log, Checkpoints::NONE)
+}
+
+/// As [`run_seed`], to the bit, with checkpoints on the way or from one on.
+///
+/// # Errors
+/// As [`run_seed`]; `E-CHECKPOINT` if what it is to go on from does not fit.
+pub fn run_seed_kept(
+    plan: &Plan,
+    seed: u64,
+    stop: &AtomicBool,
+    report: &(dyn Fn(Progress) + Sync),
+    log: &mut RunLog,
+    checkpoints: Checkpoints<'_>,
+) -> Result<SeedRun, Box<BrokenOff>> {
+    let (learned, tested) = learn_and_test(plan, seed, stop, report, log, checkpoints)?;
     let lines = base_lines(plan, seed, &tested, stop);
     SeedRun::or_broken(plan, seed, learned, tested, lines, log)
 }
 
-/// As [`run_seed`], to the bit: for a seed that has the cores to itself. A second thread, if rayon has one here, measures
+/// As [`run_seed_kept`], to the bit: for a seed that has the cores to itself. A second thread, if rayon has one here, measures
 /// the base lines of the test meanwhile, unless a filter comes from a file: of those one robot at a time makes use. Of many
 /// seeds, one that waits for it would take up another seed.
 ///
 /// # Errors
-/// As [`run_seed`].
+/// As [`run_seed_kept`].
 pub fn run_only_seed(
     plan: &Plan,
     seed: u64,
     stop: &AtomicBool,
     report: &(dyn Fn(Progress) + Sync),
     log: &mut RunLog,
+    checkpoints: Checkpoints<'_>,
 ) -> Result<SeedRun, Box<BrokenOff>> {
     let mut filters = plan.settings.views().flat_map(|view| &view.filters);
     if !filters.all(|filter| plan.filters.is_own(&filter.name)) {
-        return run_seed(plan, seed, stop, report, log);
+        return run_seed_kept(plan, seed, stop, report, log, checkpoints);
     }
-    let (tested, ahead) = rayon::join(|| learn_and_test(plan, seed, stop, report, log), || Ahead::of(plan, seed, stop));
+    let (tested, ahead) =
+        rayon::join(|| learn_and_test(plan, seed, stop, report, log, checkpoints), || Ahead::of(plan, seed, stop));
     let (learned, tested) = tested?;
     let lines = ahead.and_then(|ahead| ahead.beside(plan, seed, &tested, stop));
     SeedRun::or_broken(plan, seed, learned, tested, lines, log)
@@ -64,8 +81,12 @@ fn learn_and_test(
     stop: &AtomicBool,
     report: &(dyn Fn(Progress) + Sync),
     log: &mut RunLog,
+    checkpoints: Checkpoints<'_>,
 ) -> Result<(Option<Learned>, TestRun), Box<BrokenOff>> {
-    let learned = if plan.learns() { Some(learn_into(plan, seed, stop, report, &mut log.learning)?) } else { None };
+    let learned = match plan.learns() {
+        true => Some(learn_kept(plan, seed, stop, report, &mut log.learning, checkpoints)?),
+        false => None,
+    };
     log.test.set_out_from(learned.as_ref().map_or(&[], |learned| learned.policy.kept()));
     match Decider::of(learned.as_ref()).test(plan, seed, stop, &mut log.test) {
         Ok(tested) => Ok((learned, tested)),

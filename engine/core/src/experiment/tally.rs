@@ -2,6 +2,7 @@
 
 use super::Step;
 use crate::outcome::Endings;
+use crate::saved::{Passed, Passing, Unfit};
 use crate::verdict::{WINDOW_STEPS, Window, WindowCounts};
 
 /// Counts over a whole run.
@@ -50,6 +51,21 @@ impl Tally {
             }
         }
         window.steps == WINDOW_STEPS
+    }
+
+    pub(super) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        by.list(&mut self.windows, |by, window| {
+            let Window { steps, reinforcement, endings, contacts, stages, rounds, guarded } = window;
+            let Endings { failures, goals, restarts } = endings;
+            by.number(reinforcement)?;
+            let counts = [steps, failures, goals, restarts, contacts, stages, rounds, guarded];
+            counts.into_iter().try_for_each(|count| by.whole(count))
+        })?;
+        by.all(&mut self.fired, Passing::whole)?;
+        by.list(&mut self.by_rule, Passing::number)?;
+        by.list(&mut self.fired_by_rule, Passing::small)?;
+        let entries = self.windows.len() * self.fired.len();
+        if (self.by_rule.len(), self.fired_by_rule.len()) == (entries, entries) { Ok(()) } else { Err(Unfit) }
     }
 
     /// Goes on for `steps` more with the rules `now`, in whose order all counts then stand; rules of the same name are one.

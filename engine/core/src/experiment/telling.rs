@@ -3,6 +3,7 @@
 use super::Eyes;
 use crate::geometry::Twist;
 use crate::judge::Judge;
+use crate::saved::{Passed, Passing};
 use crate::sensors::observation::Observation;
 use crate::settings::LaserSettings;
 
@@ -29,6 +30,10 @@ pub(super) struct LaserTold {
 impl LaserTold {
     pub(super) fn of(laser: &LaserSettings) -> Self {
         Self { range_m: (laser.min_range_m, laser.max_range_m), view_deg: laser.field_of_view_deg }
+    }
+
+    pub(super) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        by.number(&mut self.range_m.1)
     }
 
     /// From now on the laser reaches so far, metres.

@@ -6,6 +6,7 @@ use super::{Cycle, Observer, Step};
 use crate::geometry::Pose;
 use crate::outcome::Ending;
 use crate::robot::Robot;
+use crate::saved::{Passed, Passing};
 
 /// A path in one world, the home world unless another is named: legs between recoveries, and where it failed and reached its goals.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -88,6 +89,20 @@ impl Recorder {
             (&mut further.get_mut(index)?.1, self.further_left.get_mut(index)?)
         };
         (*left > 0).then_some((trail, left))
+    }
+
+    pub(super) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        let point = |by: &mut Passing<'_>, [x, y]: &mut [f32; 2]| {
+            by.single(x)?;
+            by.single(y)
+        };
+        let Trail { legs, failures, last, goals, movers } = &mut self.trail;
+        by.list(legs, |by, leg| by.list(leg, point))?;
+        by.list(failures, point)?;
+        by.list(goals, point)?;
+        by.option(last, Passing::pose)?;
+        by.list(movers, Passing::pose)?;
+        by.whole(&mut self.left)
     }
 
     pub(super) fn finish(self) -> Trail {

@@ -20,29 +20,29 @@ use std::sync::Arc;
 /// One run's judging of a behaviour: counters, and what was calibrated.
 #[derive(Debug)]
 pub struct Judge {
-    present: Present,
+    pub(super) present: Present,
     beams: usize,
     /// For each rule, how many steps its condition must hold.
     needed: Vec<u32>,
-    held: Vec<u32>,
+    pub(super) held: Vec<u32>,
     /// For each rule, what a step in which its condition holds builds up: its fixed value over the steps that it needs.
     built_up: Vec<f64>,
     /// For each rule, what its value is multiplied by: the period, where it is for one second.
     scale: Vec<f64>,
     /// For each rule that fires once, whether it has fired and its condition has held ever since.
-    spent: Vec<bool>,
+    pub(super) spent: Vec<bool>,
     fired: Vec<Option<f64>>,
     /// For each rule, where the next attempt begins after it.
     destinations: Vec<Option<Destination>>,
     period_s: f64,
-    stage: StageNow,
-    odometry: Odometry,
+    pub(super) stage: StageNow,
+    pub(super) odometry: Odometry,
     /// Parts of the state.
-    digits: Vec<usize>,
+    pub(super) digits: Vec<usize>,
     /// Whether the present facts are complete and remembered.
-    is_taken: bool,
+    pub(super) is_taken: bool,
     /// Whether they become those of the step before when others are filled in.
-    is_past: bool,
+    pub(super) is_past: bool,
     /// What guards take away of the actions.
     guarding: Guarding,
     /// What was made for each world; of the present one it is above.
@@ -52,11 +52,11 @@ pub struct Judge {
 
 /// The present stage, and what the wheels had counted when it was entered.
 #[derive(Debug, Clone, Copy, Default)]
-struct StageNow {
-    index: usize,
-    steps: u64,
-    distance_m: f64,
-    turned_rad: f64,
+pub(super) struct StageNow {
+    pub(super) index: usize,
+    pub(super) steps: u64,
+    pub(super) distance_m: f64,
+    pub(super) turned_rad: f64,
 }
 
 impl Judge {

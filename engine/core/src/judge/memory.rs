@@ -3,6 +3,7 @@
 
 use super::expression::{Number, StepFacts, Typed};
 use super::rule::Persistence;
+use crate::saved::{Passed, Passing, Unfit};
 
 /// `since("rule")` of a rule that has not fired yet, seconds.
 pub(crate) const NEVER_S: f64 = 1e6;
@@ -89,6 +90,15 @@ impl Memory {
         }
     }
 
+    pub(super) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        by.all(&mut self.values, Passing::number)?;
+        by.all(&mut self.rings, |by, ring| ring.pass(by))?;
+        by.all(&mut self.rules, |by, (fired, since)| {
+            by.small(fired)?;
+            by.option(since, Passing::small)
+        })
+    }
+
     pub(super) fn forget(&mut self) {
         self.rules.fill((0, None));
         for ring in &mut self.rings {
@@ -129,6 +139,14 @@ impl Ring {
         self.next = (self.next + 1) % self.samples.len();
         self.taken = (self.taken + 1).min(self.samples.len());
         self
+    }
+
+    fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        by.all(&mut self.samples, Passing::number)?;
+        by.size(&mut self.next)?;
+        by.size(&mut self.taken)?;
+        let room = self.samples.len();
+        if self.taken > room || self.next > 0 && self.next >= room { Err(Unfit) } else { Ok(()) }
     }
 
     /// The oldest sample that is kept.

@@ -20,6 +20,7 @@ mod judging;
 pub(crate) mod memory;
 pub(crate) mod needs;
 pub(crate) mod odometry;
+mod passed;
 pub(crate) mod reach;
 pub(crate) mod readings;
 pub(crate) mod rule;

@@ -1,6 +1,7 @@
 //! What the wheels counted since the attempt began: it drifts, since slip and noise are in it.
 
 use crate::geometry::{Pose, Twist, wrap_angle};
+use crate::saved::{Passed, Passing};
 
 /// Sums of what the wheels measured, since the robot was put where it started.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -16,6 +17,11 @@ pub struct Odometry {
 }
 
 impl Odometry {
+    pub(super) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        by.numbers([&mut self.distance_m, &mut self.forward_m, &mut self.turned_rad])?;
+        by.pose(&mut self.pose)
+    }
+
     /// One more period with the speeds that the wheels measured.
     pub(crate) fn advance(&mut self, measured: Twist, period_s: f64) {
         let forward_m = measured.linear_m_per_s * period_s;

@@ -4,6 +4,7 @@ use super::site::Site;
 use super::variation::Variation;
 use crate::outcome::Destination;
 use crate::random::{Random, Stream};
+use crate::saved::{Passed, Passing, Unfit};
 use crate::settings::{RecoverTo, Settings};
 use crate::world::WorldSet;
 
@@ -63,6 +64,25 @@ impl Journey {
             }
             to => to,
         }
+    }
+
+    /// In which world the robot is, and what is drawn; then every world.
+    pub(super) fn pass(&mut self, here: &mut Site, by: &mut Passing<'_>) -> Passed {
+        let last = self.at;
+        by.size(&mut self.at)?;
+        by.random(&mut self.random)?;
+        self.variation.pass(by)?;
+        if self.at >= self.sites.len() {
+            return Err(Unfit);
+        }
+        if let Some(next) = self.sites[self.at].take() {
+            self.sites[last] = Some(std::mem::replace(here, next));
+        }
+        // What a drawn value makes anew goes on from what is passed then.
+        if matches!(by, Passing::In(_)) {
+            here.change(&self.variation.settings, &self.variation.touched);
+        }
+        self.sites.iter_mut().flatten().try_for_each(|site| site.pass(by))
     }
 
     fn vary(&mut self, here: &mut Site) {

@@ -13,6 +13,7 @@ mod variation;
 use crate::diagnostic::Result;
 use crate::geometry::{Pose, Twist};
 use crate::outcome::Destination;
+use crate::saved::{Passed, Passing, Unfit};
 use crate::sensors::observation::{Image, Observation};
 
 pub use simulated::SimulatedRobot;
@@ -95,6 +96,14 @@ pub trait Robot {
     /// seen from above, metres; 0 where they touch. `None` where nobody knows.
     fn gap_m(&self, _mover: usize) -> Option<f64> {
         None
+    }
+
+    /// Passes all that goes on: a robot made for the same plan and seed that takes it in goes on as this one would.
+    ///
+    /// # Errors
+    /// If it does not fit; a robot that cannot be left and taken up again always refuses.
+    fn pass(&mut self, _by: &mut Passing<'_>) -> Passed {
+        Err(Unfit)
     }
 
     /// The last observation's image in colour, for pictures, if it can be had; else the observation's own image serves.

@@ -2,8 +2,9 @@
 
 use crate::diagnostic::{Diagnostic, Result};
 use crate::geometry::{Point2, Pose};
-use crate::outcome::Destination;
+use crate::outcome::{Destination, pass_destination};
 use crate::random::{Random, Stream};
+use crate::saved::{Passed, Passing, Unfit};
 use crate::settings::{RecoverTo, RecoverySettings, Settings};
 use crate::world::{Layout, Route, World};
 
@@ -68,6 +69,15 @@ impl Recovery {
     /// The robot comes from another world: as many starts are in use as there.
     pub(super) fn go_on_from(&mut self, other: &Self) {
         self.starts.go_on_from(&other.starts);
+    }
+
+    /// What settings do not say.
+    pub(super) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        by.random(&mut self.random)?;
+        let mut usual = Some(self.usual);
+        pass_destination(by, &mut usual)?;
+        self.usual = usual.ok_or(Unfit)?;
+        self.starts.pass(by)
     }
 
     /// Whether the usual place is the nearest one on the lap route.

@@ -7,6 +7,7 @@ use super::site::{Site, in_view};
 use super::{Ended, Robot, Whereabouts};
 use crate::diagnostic::{Diagnostic, Result};
 use crate::geometry::{Pose, Twist};
+use crate::saved::{Passed, Passing};
 use crate::sensors::observation::{Image, Observation};
 use crate::sensors::{CameraWatch, self_test};
 use crate::settings::Settings;
@@ -119,6 +120,22 @@ impl Robot for SimulatedRobot {
         self.motion = world.advance(&[twist]).first().copied().unwrap_or_default();
         self.moved = world.body(0).pose != before;
         Ok(())
+    }
+
+    fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        if let Some(journey) = &mut self.journey {
+            journey.pass(&mut self.here, by)?;
+        }
+        self.here.pass(by)?;
+        if let Some(watch) = &mut self.watch {
+            watch.pass(by)?;
+        }
+        let Motion { contact, fallen, odometry } = &mut self.motion;
+        by.flag(contact)?;
+        by.flag(fallen)?;
+        by.twist(odometry)?;
+        by.flag(&mut self.moved)?;
+        by.option(&mut self.start, Passing::size)
     }
 
     fn recover(&mut self) -> Result<()> {

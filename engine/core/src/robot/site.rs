@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::recovery::Recovery;
 use super::variation::Touched;
+use crate::saved::{Passed, Passing};
 use crate::sensors::{Camera, GroundSensors, Laser};
 use crate::settings::{CameraSettings, GroundSettings, Settings};
 use crate::world::scene::{Scene, Solid};
@@ -67,6 +68,17 @@ impl Site {
 
     pub(super) fn ground(&mut self) -> &GroundSensors {
         self.ground.get_or_insert_with(|| GroundSensors::new(&self.scene, &self.ground_at))
+    }
+
+    /// What settings do not say.
+    pub(super) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        self.world.pass(by)?;
+        let (mut frames, mut scans) = (self.camera.frames(), self.laser.scans());
+        by.whole(&mut frames)?;
+        by.whole(&mut scans)?;
+        self.camera.set_frames(frames);
+        self.laser.set_scans(scans);
+        self.recovery.pass(by)
     }
 
     /// Becomes as these settings say, in the rooms that are touched. What depends on a drawn value is made anew: a camera or

@@ -1,5 +1,7 @@
 //! Which of the starts that a script lists are in use: all of them, or more and more.
 
+use crate::saved::{Passed, Passing, Unfit};
+
 /// So many attempts must have been made from the starts in use before another one joins.
 const ATTEMPTS: usize = 20;
 
@@ -20,6 +22,13 @@ impl StartsInUse {
     pub(super) fn new(starts: Vec<usize>, widen: Option<f64>) -> Self {
         let in_use = if widen.is_some() { 1.min(starts.len()) } else { starts.len() };
         Self { starts, in_use, widen, last: [false; ATTEMPTS], attempts: 0 }
+    }
+
+    pub(super) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        by.size(&mut self.in_use)?;
+        by.all(&mut self.last, Passing::flag)?;
+        by.size(&mut self.attempts)?;
+        if self.in_use > self.starts.len() { Err(Unfit) } else { Ok(()) }
     }
 
     /// Those that are in use.

@@ -1,6 +1,7 @@
 //! What is drawn anew for each attempt, and which parts of a robot and its world that touches.
 
 use crate::random::{Random, Stream};
+use crate::saved::{Passed, Passing};
 use crate::settings::{RecoverTo, Settings, Value, Varied, VariedKey, apply};
 use crate::world::Mover;
 
@@ -50,6 +51,14 @@ impl Variation {
             *drawn = varied.draw(random);
         }
         self.set();
+    }
+
+    /// What is drawn.
+    pub(super) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        by.random(&mut self.random)?;
+        by.all(&mut self.drawn, Passing::number)?;
+        self.set();
+        Ok(())
     }
 
     fn set(&mut self) {

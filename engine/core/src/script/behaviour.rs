@@ -149,6 +149,12 @@ impl Behaviour {
         }
     }
 
+    /// Whether it has a `fn calibrate`, which looks at what the robot sees first in each of its worlds.
+    #[must_use]
+    pub fn calibrates(&self) -> bool {
+        self.compiled.calibrate.is_some()
+    }
+
     /// Whether an attempt may end in a goal.
     #[must_use]
     pub fn has_goals(&self) -> bool {

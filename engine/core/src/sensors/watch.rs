@@ -4,6 +4,7 @@ use super::camera::Camera;
 use super::observation::Image;
 use crate::diagnostic::{Diagnostic, Result};
 use crate::geometry::{Isometry3, rotation};
+use crate::saved::{Passed, Passing};
 use crate::world::scene::Solid;
 use nalgebra::{Translation3, UnitQuaternion};
 use std::f64::consts::TAU;
@@ -35,6 +36,13 @@ impl CameraWatch {
     #[must_use]
     pub fn new() -> Self {
         Self { reference: Vec::new(), images: 0, blank: true, frozen: true }
+    }
+
+    pub(crate) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        by.bytes(&mut self.reference)?;
+        by.small(&mut self.images)?;
+        by.flag(&mut self.blank)?;
+        by.flag(&mut self.frozen)
     }
 
     /// Looks at the next image. Images count only if the body moved since the last one.

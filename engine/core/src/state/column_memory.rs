@@ -1,5 +1,7 @@
 //! What a grid remembers of its columns: which are empty now and were not a while ago.
 
+use crate::saved::{Passed, Passing};
+
 /// When each column was last not empty.
 #[derive(Debug, Clone)]
 pub(super) struct ColumnMemory {
@@ -24,6 +26,10 @@ impl ColumnMemory {
     /// A step takes so long, seconds.
     pub(super) fn set_period(&mut self, period_s: f64) {
         self.steps = (self.remember_s / period_s - 1e-9).ceil().max(1.0) as u32;
+    }
+
+    pub(super) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        by.all(&mut self.steps_since, Passing::small)
     }
 
     pub(super) fn forget(&mut self) {

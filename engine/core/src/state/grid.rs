@@ -13,6 +13,7 @@
 //! A grid that remembers has one more height, rows + 1: *gone*, of a column that is empty now and was not a while ago.
 
 use super::column_memory::ColumnMemory;
+use crate::saved::{Passed, Passing};
 use crate::settings::GridSettings;
 use dispatch::{Processor, compiled_for_each_processor};
 
@@ -132,6 +133,12 @@ impl Grid {
     /// Whether it remembers anything.
     pub(crate) fn remembers(&self) -> bool {
         self.memory.is_on()
+    }
+
+    /// What goes on from mask to mask.
+    pub(crate) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        by.size(&mut self.state)?;
+        self.memory.pass(by)
     }
 
     /// The robot was put somewhere: nothing was there a while ago.

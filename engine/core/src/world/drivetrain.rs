@@ -2,6 +2,7 @@
 
 use crate::geometry::Twist;
 use crate::random::Random;
+use crate::saved::{Passed, Passing};
 use crate::settings::{Bicycle, RobotSettings};
 
 /// The drive of the robot: wheels that follow a command with a first-order lag, and a ground on which they skid.
@@ -50,6 +51,13 @@ impl Drivetrain {
     pub(super) fn change(&mut self, robot: &RobotSettings, period_s: f64) {
         let Self { wheels, factors, random, .. } = self.clone();
         *self = Self { wheels, factors, ..Self::new(robot, period_s, random) };
+    }
+
+    /// What settings do not say.
+    pub(super) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        by.twist(&mut self.wheels)?;
+        by.twist(&mut self.factors)?;
+        by.random(&mut self.random)
     }
 
     /// Stands still.

@@ -39,6 +39,7 @@ pub use world_set::WorldSet;
 
 use crate::geometry::{Point2, Pose, Twist};
 use crate::random::{Random, Stream};
+use crate::saved::{Passed, Passing};
 use crate::settings::RobotSettings;
 use drivetrain::Drivetrain;
 use scene::Solid;
@@ -115,6 +116,16 @@ impl World {
     pub(crate) fn set_mover_speed(&mut self, index: usize, speed: f64) {
         self.movements.set_scale(index, speed);
         self.traffic.arrange(&self.layout.movers, &self.movements);
+    }
+
+    /// Where bodies and movers are, and what they will draw.
+    pub(crate) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        by.all(&mut self.vehicles, |by, vehicle| vehicle.pass(by))?;
+        by.whole(&mut self.periods)?;
+        self.movements.pass(by)?;
+        self.traffic.arrange(&self.layout.movers, &self.movements);
+        (0..self.vehicles.len()).for_each(|index| self.show(index));
+        Ok(())
     }
 
     /// An attempt begins: movers whose file says so draw their speed, or begin anew.

@@ -6,6 +6,7 @@ use super::route::Route;
 use super::schedule::{Ride, Schedule};
 use crate::geometry::{Point2, Pose};
 use crate::random::{Random, Stream};
+use crate::saved::{Passed, Passing};
 use std::sync::Arc;
 
 /// All movers of a world at one time.
@@ -36,6 +37,14 @@ impl Movements {
 
     pub(super) fn scaled(self, scale: f64) -> Self {
         Self { scales: vec![scale; self.scales.len()], ..self }
+    }
+
+    pub(super) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        // Those of one world file are the same ones in every run.
+        by.all(&mut self.rides, |by, ride| ride.as_mut().map_or(Ok(()), |ride| ride.pass(by)))?;
+        by.random(&mut self.random)?;
+        by.all(&mut self.scales, Passing::number)?;
+        by.number(&mut self.time_s)
     }
 
     /// From here on one mover is so many times as fast as its file says.

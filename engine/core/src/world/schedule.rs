@@ -1,6 +1,7 @@
 //! How a mover drives that does more than follow its route at one speed: as its world file says, from time to time anew.
 
 use super::route::Route;
+use crate::saved::{Passed, Passing};
 
 /// What a mover does beside driving on.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,6 +58,11 @@ impl Ride {
         let along_m = route.within(offset_m);
         let back = schedule.returns && along_m == route.length_m();
         Self { along_m, back, standing_s: 0.0, left_m, speed_m_per_s }
+    }
+
+    pub(super) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        by.flag(&mut self.back)?;
+        by.numbers([&mut self.along_m, &mut self.standing_s, &mut self.left_m, &mut self.speed_m_per_s])
     }
 
     /// Whether it waits for a robot.

@@ -1,6 +1,7 @@
 //! Where a body stands: a place on the floor plan and a plane above it.
 
 use crate::geometry::Pose;
+use crate::saved::{Passed, Passing};
 
 /// A pose with the plane that the body stands on: z = `z_m` + `slope_x` * x + `slope_y` * y in the body's own axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,6 +15,11 @@ pub(super) struct Stance {
 }
 
 impl Stance {
+    pub(super) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        by.pose(&mut self.pose)?;
+        by.numbers([&mut self.sin, &mut self.cos, &mut self.z_m, &mut self.slope_x, &mut self.slope_y])
+    }
+
     /// Level at height `z_m`.
     pub(super) fn level(pose: Pose, z_m: f64) -> Self {
         let (sin, cos) = libm::sincos(pose.yaw_rad);

@@ -8,6 +8,7 @@ use super::stance::Stance;
 use super::terrain::Terrain;
 use super::traffic::Traffic;
 use crate::geometry::{Point3, Pose, Twist, Vector3};
+use crate::saved::{Passed, Passing};
 use crate::settings::{BodyShape, Footprint, RobotSettings};
 
 /// A body and its drive.
@@ -81,6 +82,12 @@ impl Vehicle {
             others: Vec::with_capacity(others),
             struck: Vec::with_capacity(others),
         }
+    }
+
+    pub(super) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        self.stance.pass(by)?;
+        by.flag(&mut self.fallen)?;
+        self.drive.pass(by)
     }
 
     /// Drives on as other settings say, with the same random numbers.

@@ -1,6 +1,7 @@
 //! What a run's folder shows to people, drawn again and compared with what stands there.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 
 use super::pages::PAGE_FILE;
 use super::{RunFolder, SeedResult};
@@ -23,7 +24,13 @@ impl RunFolder {
     /// The folder of a run that is done; `many` if each seed has a folder of its own in it.
     #[must_use]
     pub fn of_run(path: &Path, many: bool) -> Self {
-        Self { path: path.to_owned(), logs: path.to_owned(), many }
+        Self::elsewhere(path, path, many)
+    }
+
+    pub(super) fn elsewhere(work: &Path, logs: &Path, many: bool) -> Self {
+        let (path, work, logs) = (logs.to_owned(), work.to_owned(), logs.to_owned());
+        let (broken, marked) = (AtomicBool::new(false), AtomicBool::new(false));
+        Self { path, work, logs, staged: None, many, broken, marked }
     }
 
     /// Whether its page shows what a check of the script found.
@@ -41,7 +48,7 @@ impl RunFolder {
     pub fn redraw(&self, plan: &Plan, results: &[SeedResult], checked: Option<&Report>) -> Result<Redrawn> {
         let disk = |error: &std::io::Error| Diagnostic::disk("make a folder in", &std::env::temp_dir(), error);
         let scratch = tempfile::tempdir().map_err(|error| Box::new(disk(&error)))?;
-        let again = Self { path: scratch.path().to_owned(), logs: self.path.clone(), many: self.many };
+        let again = Self::elsewhere(scratch.path(), &self.path, self.many);
         again.show(plan, results, checked)?;
         let mut redrawn = Redrawn::default();
         for file in files(scratch.path(), Path::new(""))? {

@@ -3,9 +3,8 @@
 use std::path::Path;
 
 use super::SeedResult;
-use super::pages::PAGE_FILE;
-use super::pictures::PICTURES;
-use crate::report::{CurveRow, curve_csv, disagreements_csv, write_atomic};
+use crate::disk::write_atomic;
+use crate::report::{CurveRow, curve_csv, disagreements_csv};
 use crate::store::{LOG_FILE, POLICY_FILE, RUN_FILE, SUMMARY_FILE, log_to_bytes, policy_to_toml, run_to_toml};
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Learned, Plan, RunLog, TestRun, WINDOW_STEPS};
@@ -39,21 +38,6 @@ pub const CURVE_FILE: &str = "curve.csv";
 
 /// The file of a combination in a run's folder: where its policies disagree.
 pub const DISAGREEMENTS_FILE: &str = "disagreements.csv";
-
-/// Removes pictures and a page that an older run drew in a folder: of many seeds only one has pictures, and not always the same.
-pub(super) fn remove_drawn(folder: &Path) -> Result<()> {
-    let pictures = PICTURES.iter().flat_map(|stem| ["svg", "png"].map(|ending| format!("{stem}.{ending}")));
-    for name in pictures.chain([PAGE_FILE.to_owned()]) {
-        let path = folder.join(name);
-        match std::fs::remove_file(&path) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                return Diagnostic::disk("remove the old", &path, &error).fail();
-            }
-            _ => {}
-        }
-    }
-    Ok(())
-}
 
 /// Writes `log.bin`.
 pub(super) fn write_log(folder: &Path, plan: &Plan, seed: u64, log: &RunLog) -> Result<()> {

@@ -7,21 +7,25 @@ mod pictures;
 mod removal;
 mod taken;
 mod test_folder;
+mod unfinished;
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::disk::{Staged, write_atomic};
 use crate::lint::Report;
-use crate::report::write_atomic;
 use crate::store::{POLICY_FILE, RUN_FILE, SUMMARY_FILE, run_to_toml};
-use engine::diagnostic::{Diagnostic, Result};
+use engine::diagnostic::Result;
 use engine::experiment::{Learned, Plan, RunLog, SeedRun, Spread};
-use files::{remove_drawn, write_log, write_policy, write_run, write_seed};
-use taken::{Claim, taken};
+use files::{write_log, write_policy, write_run, write_seed};
+use removal::retire;
+use taken::{Claim, taken, unfinished};
 
 pub use drawn::Redrawn;
 pub use files::{CURVE_FILE, DISAGREEMENTS_FILE, create_folder, curve_of, disagreements_of, write_json};
 pub use removal::remove_run;
 pub use test_folder::TestFolder;
+pub use unfinished::Unfinished;
 
 /// One seed's results.
 #[derive(Debug, Clone)]
@@ -32,14 +36,22 @@ pub struct SeedResult {
     pub log: Option<RunLog>,
 }
 
-/// A folder for one run, of one seed or many.
-#[derive(Debug, Clone)]
+/// A folder for one run, of one seed or many: complete or absent, see [`RunFolder::commit`].
+#[derive(Debug)]
 pub struct RunFolder {
+    /// Its place.
     path: PathBuf,
+    /// Where it is written: beside its place, unless it is drawn again elsewhere.
+    work: PathBuf,
     /// Where its logs are: the same folder, unless it is drawn again elsewhere.
     logs: PathBuf,
+    staged: Option<Staged>,
     /// Whether each seed has a folder of its own in it.
     many: bool,
+    /// Whether it holds what a failure left.
+    broken: AtomicBool,
+    /// Whether a checkpoint was kept.
+    marked: AtomicBool,
 }
 
 /// What to do if a folder holds another run: another script, other settings, another seed.
@@ -54,22 +66,53 @@ pub enum IfTaken {
 }
 
 impl RunFolder {
-    /// Creates the folder and writes `run.toml`, so that a folder that cannot be written is known before learning.
+    /// Creates the folder beside its place and writes `run.toml`, so that a folder that cannot be written is known before
+    /// learning. What stands in its place stays.
     ///
     /// # Errors
-    /// If it cannot be made; `E-RUN-TAKEN` if it holds another run that must stay.
+    /// If it cannot be made; `E-LOCKED` if another process writes to it; `E-RUN-TAKEN` if it holds another run that must stay,
+    /// `E-RUN-UNFINISHED` if one was killed that can be gone on with.
     pub fn create(path: &Path, plan: &Plan, seeds: &[u64], if_taken: IfTaken) -> Result<Self> {
         let run = run_to_toml(plan, seeds.first().copied().unwrap_or_default())?;
         let claim = Claim { run: &run, seeds };
-        let path = match if_taken {
-            IfTaken::Refuse if claim.is_denied(path) => return taken(path).fail(),
-            IfTaken::Replace | IfTaken::Refuse => path.to_owned(),
-            IfTaken::Number => claim.numbered(path),
-        };
-        create_folder(&path)?;
-        claim.clear(&path)?;
-        write_atomic(&path.join(RUN_FILE), run.as_bytes())?;
-        Ok(Self { logs: path.clone(), path, many: seeds.len() > 1 })
+        loop {
+            let path = match if_taken {
+                IfTaken::Number => claim.numbered(path)?,
+                IfTaken::Replace | IfTaken::Refuse => path.to_owned(),
+            };
+            let mut staged = Staged::beside(&path, retire)?;
+            if if_taken == IfTaken::Replace {
+                staged.discard_resumable()?;
+            } else if staged.can_be_resumed() {
+                return unfinished(&path).fail();
+            }
+            // Another process may have been done since the number was found.
+            if if_taken != IfTaken::Replace && claim.is_denied(&path)? {
+                match if_taken {
+                    IfTaken::Number => continue,
+                    _ => return taken(&path).fail(),
+                }
+            }
+            let work = staged.folder().to_owned();
+            write_atomic(&work.join(RUN_FILE), run.as_bytes())?;
+            return Ok(Self { path, staged: Some(staged), ..Self::elsewhere(&work, &work, seeds.len() > 1) });
+        }
+    }
+
+    /// Puts the folder into its place: until then whoever looks there finds what stood there before.
+    ///
+    /// # Errors
+    /// If that fails; what stood there is then unchanged.
+    pub fn commit(self) -> Result<()> {
+        self.staged.map_or(Ok(()), Staged::commit)
+    }
+
+    /// Puts the folder into its place if it holds what a failure left, see [`RunFolder::keep_broken`].
+    ///
+    /// # Errors
+    /// As [`RunFolder::commit`].
+    pub fn commit_broken(self) -> Result<()> {
+        if self.broken.load(Ordering::Relaxed) { self.commit() } else { Ok(()) }
     }
 
     /// Where it is.
@@ -80,7 +123,7 @@ impl RunFolder {
 
     /// The folder of one seed, made if it is not there.
     fn of_seed(&self, seed: u64) -> Result<PathBuf> {
-        let folder = if self.many { self.path.join(seed.to_string()) } else { self.path.clone() };
+        let folder = if self.many { self.work.join(seed.to_string()) } else { self.work.clone() };
         create_folder(&folder)?;
         Ok(folder)
     }
@@ -96,19 +139,15 @@ impl RunFolder {
     /// Writes what there is of a seed that a failure ended: its policy, whose path is returned, and its steps, not tested.
     ///
     /// # Errors
-    /// If a file cannot be written, or the figures of an older run cannot be removed.
+    /// If a file cannot be written.
     pub fn keep_broken(&self, plan: &Plan, learned: &Learned, log: &RunLog) -> Result<PathBuf> {
         let folder = self.of_seed(learned.seed)?;
         write_run(&folder, plan, learned.seed)?;
         write_log(&folder, plan, learned.seed, log)?;
         write_policy(&folder, plan, learned)?;
-        // Of an older run in the same folder.
-        match std::fs::remove_file(folder.join(SUMMARY_FILE)) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                Err(Box::new(Diagnostic::disk("remove the old", &folder.join(SUMMARY_FILE), &error)))
-            }
-            _ => Ok(folder.join(POLICY_FILE)),
-        }
+        self.broken.store(true, Ordering::Relaxed);
+        let own = if self.many { self.path.join(learned.seed.to_string()) } else { self.path.clone() };
+        Ok(own.join(POLICY_FILE))
     }
 
     /// Writes figures, policies, pictures and pages; of many seeds, a folder for each and the spread above them. The logs
@@ -119,12 +158,10 @@ impl RunFolder {
     pub fn write(&self, plan: &Plan, results: &[SeedResult], checked: Option<&Report>) -> Result<()> {
         if self.many {
             let spread = Spread::new(results.iter().map(|result| result.run.summary.clone()).collect());
-            write_json(&self.path.join(SUMMARY_FILE), &spread)?;
+            write_json(&self.work.join(SUMMARY_FILE), &spread)?;
         }
-        remove_drawn(&self.path)?;
         for result in results {
             let folder = self.of_seed(result.run.summary.seed)?;
-            remove_drawn(&folder)?;
             if self.many {
                 write_run(&folder, plan, result.run.summary.seed)?;
             }
@@ -136,7 +173,7 @@ impl RunFolder {
     /// Pictures and pages.
     fn show(&self, plan: &Plan, results: &[SeedResult], checked: Option<&Report>) -> Result<()> {
         if self.many {
-            pictures::draw_paths(&self.path, plan, results)?;
+            pictures::draw_paths(&self.work, plan, results)?;
         }
         if plan.learns() {
             self.show_learned(plan, results, checked)
@@ -152,8 +189,8 @@ impl RunFolder {
         let folder = self.of_seed(worst.run.summary.seed)?;
         // The page plays the whole run again, which takes about as long as all pictures.
         std::thread::scope(|scope| {
-            let page = scope.spawn(|| pages::write_page(&self.path, &self.logs, plan, results, checked));
-            let drawn = pictures::draw_curve(&self.path, plan, results)
+            let page = scope.spawn(|| pages::write_page(&self.work, &self.logs, plan, results, checked));
+            let drawn = pictures::draw_curve(&self.work, plan, results)
                 .and_then(|()| pictures::draw_seed(&folder, plan, worst));
             let written = page.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
             drawn.and(written)

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use super::SeedResult;
+use crate::disk::write_atomic;
 use crate::lint::Report;
 use crate::page::{Document, Moments, SeedData, median_seed, page};
-use crate::report::write_atomic;
 use crate::store::{LOG_FILE, RUN_FILE, read_log, read_stored};
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Ledger, Plan, RunLog};

@@ -2,15 +2,28 @@
 
 use std::path::{Path, PathBuf};
 
-use super::CURVE_FILE;
 use super::pages::PAGE_FILE;
 use super::pictures::PICTURES;
-use crate::store::{LOG_FILE, POLICY_FILE, RUN_FILE, SUMMARY_FILE, TAG_FILE, read_stored};
+use super::test_folder::TEST_FILE;
+use super::{CURVE_FILE, DISAGREEMENTS_FILE};
+use crate::disk::{Lock, RESUMABLE, is_there, is_unfinished};
+use crate::store::{CHECKPOINT_FILE, LOG_FILE, POLICY_FILE, RUN_FILE, STEPS_FILE, SUMMARY_FILE, TAG_FILE, read_stored};
 use engine::diagnostic::{Diagnostic, Result, SourceText, printable};
 
 /// Files of a run under names of their own.
-const FILES: [&str; 8] =
-    [RUN_FILE, SUMMARY_FILE, POLICY_FILE, LOG_FILE, CURVE_FILE, PAGE_FILE, TAG_FILE, "disagreements.csv"];
+const FILES: [&str; 11] = [
+    RUN_FILE,
+    SUMMARY_FILE,
+    POLICY_FILE,
+    LOG_FILE,
+    CURVE_FILE,
+    PAGE_FILE,
+    TAG_FILE,
+    RESUMABLE,
+    CHECKPOINT_FILE,
+    STEPS_FILE,
+    DISAGREEMENTS_FILE,
+];
 /// What `engine rescore` writes into a folder of its own within the run's.
 const RESCORE: &str = "rescore-";
 const RESCORE_FILES: [&str; 3] = ["rescore.json", "policy-diff.svg", "policy-diff.png"];
@@ -26,31 +39,77 @@ pub fn remove_run(folder: &Path) -> Result<Vec<PathBuf>> {
         let message = format!("'{}' is a link to a run somewhere else", printable(&folder.display().to_string()));
         return Diagnostic::new("E-RUN-FILE", message).help("name the folder itself").fail();
     }
+    let _lock = Lock::take(folder)?;
     let mut kept = Vec::new();
     remove(folder, &is_of_a_run, &mut kept)?;
     Ok(kept)
 }
 
-/// Removes what the engine wrote into the folder of a seed, and the folder unless something else stands in it.
+/// Removes a folder in whose place another one stands now. Of a run or a test its tag, what was scored of it anew and what somebody
+/// else put there moves to the new one; of any other folder all does.
 ///
 /// # Errors
-/// If a file cannot be removed.
-pub(super) fn remove_seed(folder: &Path) -> Result<()> {
-    remove(folder, &is_of_a_run, &mut Vec::new())
+/// If something cannot be removed or moved.
+pub(super) fn retire(old: &Path, now: &Path) -> Result<()> {
+    let (stays, mut kept) = (is_there(now)?, Vec::new());
+    if is_there(&old.join(RUN_FILE))? || is_there(&old.join(TEST_FILE))? {
+        for path in entries(old)? {
+            let name = name_of(&path);
+            if stays && (name == TAG_FILE || name.starts_with(RESCORE)) {
+                move_on(&path, old, now)?;
+            }
+        }
+        remove(old, &|name| is_of_a_run(name) || name == TEST_FILE || is_unfinished(name), &mut kept)?;
+    } else {
+        // Folders named by numbers may be runs of their own here.
+        kept = entries(old)?;
+    }
+    if !stays && !kept.is_empty() {
+        return Ok(());
+    }
+    kept.iter().try_for_each(|path| move_on(path, old, now))?;
+    match std::fs::remove_dir_all(old) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(disk("remove the old", old, &error)),
+        _ => Ok(()),
+    }
+}
+
+/// Moves what stands in an old folder to the same place in the new one, under another name if there is such a file.
+fn move_on(path: &Path, old: &Path, now: &Path) -> Result<()> {
+    let wanted = now.join(path.strip_prefix(old).unwrap_or(path));
+    let (mut to, mut number) = (wanted.clone(), 0);
+    while is_there(&to)? {
+        number += 1;
+        to = wanted.with_file_name(format!("{}.old{number}", name_of(&wanted)));
+    }
+    let made = to.parent().map_or(Ok(()), std::fs::create_dir_all);
+    made.and_then(|()| std::fs::rename(path, &to)).map_err(|error| disk("move", path, &error))
+}
+
+fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+fn disk(what: &str, path: &Path, error: &std::io::Error) -> Box<Diagnostic> {
+    Box::new(Diagnostic::disk(what, path, error))
+}
+
+/// What stands in a folder, in the order of the names.
+fn entries(folder: &Path) -> Result<Vec<PathBuf>> {
+    let entries = std::fs::read_dir(folder).and_then(Iterator::collect::<std::io::Result<Vec<_>>>);
+    let entries = entries.map_err(|error| disk("read the folder", folder, &error))?;
+    let mut paths: Vec<PathBuf> = entries.iter().map(std::fs::DirEntry::path).collect();
+    paths.sort();
+    Ok(paths)
 }
 
 /// Removes the files of a folder that are `own`, then the folder if it is empty.
 fn remove(folder: &Path, own: &dyn Fn(&str) -> bool, kept: &mut Vec<PathBuf>) -> Result<()> {
-    let disk = |what: &str, path: &Path, error| Box::new(Diagnostic::disk(what, path, &error));
-    let entries = std::fs::read_dir(folder).and_then(Iterator::collect::<std::io::Result<Vec<_>>>);
-    let mut paths: Vec<PathBuf> =
-        entries.map_err(|error| disk("read the folder", folder, error))?.iter().map(std::fs::DirEntry::path).collect();
-    paths.sort();
     let before = kept.len();
-    for path in paths {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    for path in entries(folder)? {
+        let name = name_of(&path);
         if path.is_file() && !path.is_symlink() && own(&name) {
-            std::fs::remove_file(&path).map_err(|error| disk("remove", &path, error))?;
+            std::fs::remove_file(&path).map_err(|error| disk("remove", &path, &error))?;
         } else if is_rescored(&path, &name) {
             remove(&path, &|name| RESCORE_FILES.contains(&name), kept)?;
         } else if is_of_a_seed(&path, &name) {
@@ -60,7 +119,7 @@ fn remove(folder: &Path, own: &dyn Fn(&str) -> bool, kept: &mut Vec<PathBuf>) ->
         }
     }
     if kept.len() == before {
-        std::fs::remove_dir(folder).map_err(|error| disk("remove", folder, error))?;
+        std::fs::remove_dir(folder).map_err(|error| disk("remove", folder, &error))?;
     }
     Ok(())
 }
@@ -136,6 +195,33 @@ mod tests {
         std::os::unix::fs::symlink(place.path().join("1"), &link).unwrap();
         assert!(remove_run(&link).unwrap_err().message.contains("is a link"));
         assert!(place.path().join("1/log.bin").exists());
+    }
+
+    #[test]
+    fn what_somebody_else_put_into_a_run_moves_to_the_run_that_replaces_it() {
+        let place = tempfile::tempdir().unwrap();
+        let (old, now) = (place.path().join(".1.x.part"), place.path().join("1"));
+        write(&old, &["run.toml", "log.bin", "test.json", ".log.bin.x.part", "7/run.toml"]);
+        write(&old, &["notes.md", "7/mine.txt", "tag.txt", "rescore-a/rescore.json"]);
+        write(&now, &["run.toml"]);
+        retire(&old, &now).unwrap();
+        for moved in ["notes.md", "7/mine.txt", "tag.txt", "rescore-a/rescore.json"] {
+            assert!(now.join(moved).exists(), "{moved}");
+        }
+        assert!(!old.exists() && !now.join("log.bin").exists());
+    }
+
+    #[test]
+    fn of_a_folder_that_is_no_run_everything_moves_and_nothing_is_lost() {
+        let place = tempfile::tempdir().unwrap();
+        let (old, now) = (place.path().join(".wall.x.part"), place.path().join("wall"));
+        write(&old, &["1/run.toml", "1/log.bin", "2/run.toml", "report.html"]);
+        write(&now, &["run.toml", "report.html"]);
+        retire(&old, &now).unwrap();
+        for moved in ["1/run.toml", "1/log.bin", "2/run.toml", "report.html", "report.html.old1"] {
+            assert!(now.join(moved).exists(), "{moved}");
+        }
+        assert!(!old.exists());
     }
 
     #[test]

@@ -2,10 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use super::CURVE_FILE;
-use super::removal::remove_seed;
-use crate::store::{LOG_FILE, POLICY_FILE, RUN_FILE, seed_folders};
+use crate::disk::{is_there, read_file};
+use crate::store::{LOG_FILE, RUN_FILE, seed_folders};
 use engine::diagnostic::{Diagnostic, Result, printable};
+
+/// The longest `run.toml` that is compared, bytes.
+const MOST_RUN_BYTES: u64 = 256 << 20;
 
 /// A run as its folder is known by: `run.toml`, and its seeds.
 #[derive(Debug, Clone, Copy)]
@@ -16,45 +18,39 @@ pub(super) struct Claim<'a> {
 
 impl Claim<'_> {
     /// Whether a folder holds another run: of another script, of one seed instead of many, of seeds that are not among these.
-    pub(super) fn is_denied(self, folder: &Path) -> bool {
+    ///
+    /// # Errors
+    /// If that cannot be told.
+    pub(super) fn is_denied(self, folder: &Path) -> Result<bool> {
         let path = folder.join(RUN_FILE);
-        if !path.exists() {
-            return false;
+        if !is_there(&path)? {
+            // The folder of several runs is none of them.
+            return Ok(!seed_folders(folder).is_empty());
         }
-        let one = folder.join(LOG_FILE).exists();
+        let one = is_there(&folder.join(LOG_FILE))?;
         let others = seed_folders(folder).into_iter().any(|(seed, _)| !self.seeds.contains(&seed) || !self.is_many());
         // One that cannot be read is somebody's too.
-        one && self.is_many() || others || std::fs::read(path).map_or(true, |old| old != self.run.as_bytes())
+        Ok(one && self.is_many()
+            || others
+            || read_file(&path, MOST_RUN_BYTES).map_or(true, |old| old != self.run.as_bytes()))
     }
 
     fn is_many(self) -> bool {
         self.seeds.len() > 1
     }
 
-    /// Removes what another run left in a folder that is replaced, and that this one would not write over.
+    /// The folder itself, or the first with a number behind its name that does not hold another run.
     ///
     /// # Errors
-    /// If it cannot be removed.
-    pub(super) fn clear(self, folder: &Path) -> Result<()> {
-        let stale = |seed: &u64| !self.is_many() || !self.seeds.contains(seed);
-        for (_, seed) in seed_folders(folder).into_iter().filter(|(seed, _)| stale(seed)) {
-            remove_seed(&seed)?;
-        }
-        for name in [LOG_FILE, POLICY_FILE, CURVE_FILE] {
-            let path = folder.join(name);
-            if self.is_many() && path.exists() {
-                std::fs::remove_file(&path).map_err(|error| Box::new(Diagnostic::disk("remove", &path, &error)))?;
-            }
-        }
-        Ok(())
-    }
-
-    /// The folder itself, or the first with a number behind its name that does not hold another run.
-    pub(super) fn numbered(self, folder: &Path) -> PathBuf {
+    /// If that cannot be told.
+    pub(super) fn numbered(self, folder: &Path) -> Result<PathBuf> {
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let numbers = (2_u64..).map(|number| folder.with_file_name(format!("{name}.{number}")));
-        let mut all = std::iter::once(folder.to_owned()).chain(numbers);
-        all.find(|folder| !self.is_denied(folder)).unwrap_or_else(|| folder.to_owned())
+        let (mut path, mut number) = (folder.to_owned(), 1_u64);
+        while self.is_denied(&path)? {
+            number += 1;
+            path = folder.with_file_name(format!("{name}.{number}"));
+        }
+        Ok(path)
     }
 }
 
@@ -62,6 +58,13 @@ pub(super) fn taken(folder: &Path) -> Diagnostic {
     let shown = printable(&folder.display().to_string());
     let message = format!("'{shown}' holds another run: of another script, other settings or other seeds");
     Diagnostic::new("E-RUN-TAKEN", message).help("name another folder with --out, or replace that run with --force")
+}
+
+pub(super) fn unfinished(folder: &Path) -> Diagnostic {
+    let shown = printable(&folder.display().to_string());
+    let message = format!("a run into '{shown}' was killed, and its checkpoint would be lost");
+    Diagnostic::new("E-RUN-UNFINISHED", message)
+        .help(format!("go on with it: engine run --resume {shown}; or start anew: add --force"))
 }
 
 #[cfg(test)]
@@ -76,7 +79,7 @@ mod tests {
             std::fs::create_dir_all(place.path().join(name)).unwrap();
             std::fs::write(place.path().join(name).join(RUN_FILE), run).unwrap();
         };
-        let numbered = |run: &str| Claim { run, seeds: &[1] }.numbered(&folder);
+        let numbered = |run: &str| Claim { run, seeds: &[1] }.numbered(&folder).unwrap();
         assert_eq!(numbered("a"), folder);
         write("1", "a");
         assert_eq!((numbered("a"), numbered("b")), (folder.clone(), place.path().join("1.2")));
@@ -85,24 +88,20 @@ mod tests {
     }
 
     #[test]
-    fn one_seed_and_many_are_different_runs_and_what_one_left_is_removed_with_force() {
+    fn one_seed_and_many_are_different_runs() {
         let place = tempfile::tempdir().unwrap();
         let folder = place.path();
         std::fs::write(folder.join(RUN_FILE), "a").unwrap();
         std::fs::write(folder.join(LOG_FILE), "").unwrap();
         let (one, two) = (Claim { run: "a", seeds: &[1] }, Claim { run: "a", seeds: &[1, 2] });
-        assert!(!one.is_denied(folder) && two.is_denied(folder));
-        two.clear(folder).unwrap();
+        let denied = |claim: Claim<'_>| claim.is_denied(folder).unwrap();
+        assert!(!denied(one) && denied(two));
+        std::fs::remove_file(folder.join(LOG_FILE)).unwrap();
         for seed in ["1", "2", "3"] {
             std::fs::create_dir_all(folder.join(seed)).unwrap();
             std::fs::write(folder.join(seed).join(RUN_FILE), "a").unwrap();
         }
         // The third seed would stand there as if it were this run's.
-        assert!(two.is_denied(folder) && one.is_denied(folder));
-        assert!(!Claim { run: "a", seeds: &[1, 2, 3] }.is_denied(folder));
-        two.clear(folder).unwrap();
-        assert!(!two.is_denied(folder) && !folder.join("3").exists() && folder.join("2").exists());
-        one.clear(folder).unwrap();
-        assert!(!one.is_denied(folder) && seed_folders(folder).is_empty());
+        assert!(denied(two) && denied(one) && !denied(Claim { run: "a", seeds: &[1, 2, 3] }));
     }
 }

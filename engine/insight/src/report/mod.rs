@@ -2,7 +2,6 @@
 //!
 //! Every picture is laid out once on a list of marks and then written twice: as SVG text and as PNG bytes.
 
-mod atomic;
 mod axes;
 mod canvas;
 mod certainty;
@@ -25,7 +24,6 @@ mod trajectory;
 mod vector;
 mod worlds;
 
-pub use atomic::write_atomic;
 pub use certainty::certainty_grid;
 pub use csv::{CurveRow, curve_csv};
 pub use curve::{CurveData, learning_curve};

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::atomic::write_atomic;
+use crate::disk::write_atomic;
 use engine::diagnostic::{Diagnostic, Result};
 
 /// One picture in two forms.

@@ -1,5 +1,6 @@
 //! Files that a run leaves and that a later command reads.
 
+mod checkpoint;
 mod filter_entry;
 mod going_on;
 mod log;
@@ -9,14 +10,16 @@ mod policy_file;
 mod run_file;
 mod used;
 
+pub use checkpoint::{CHECKPOINT_FILE, CheckpointWriter, STEPS_FILE, StoredCheckpoint};
 pub use going_on::going_on_from;
 pub use log::{LOG_FILE, MAGIC, RecordedRun, log_to_bytes, read_log};
 pub use members::{PolicyText, policy_files, with_policies, with_policies_or, with_policy_texts};
 pub(crate) use parts::TAG_FILE;
 pub use parts::{RUN_FILE, SUMMARY_FILE, seed_folders};
 pub use policy_file::{POLICY_FILE, StoredPolicy, policy_from_toml, policy_to_toml};
-pub use run_file::{StoredRun, run_to_toml};
+pub use run_file::{StoredRun, plan_of_run, run_to_toml};
 
+use crate::disk::read_file;
 use engine::diagnostic::{Diagnostic, Result, SourceText, printable};
 use std::path::Path;
 
@@ -31,13 +34,9 @@ const MOST_NAMED: usize = 12;
 /// If it is missing, too large or not text: exit status 7, since a run that lacks it does not fit.
 pub fn read_stored(path: &Path) -> Result<SourceText> {
     let unfit = |message: String| Diagnostic::new("E-RUN-FILE", message).help(which_run(path));
-    let length =
-        std::fs::metadata(path).map_err(|error| Box::new(unfit(Diagnostic::disk("read", path, &error).message)))?.len();
-    if length > MAX_BYTES {
-        return unfit(format!("'{}' has {length} bytes, more than the limit of {MAX_BYTES}", path.display())).fail();
-    }
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| Box::new(unfit(Diagnostic::disk("read", path, &error).message)))?;
+    let failed = |error: &std::io::Error| Box::new(unfit(Diagnostic::disk("read", path, error).message));
+    let bytes = read_file(path, MAX_BYTES).map_err(|error| failed(&error))?;
+    let text = String::from_utf8(bytes).map_err(|_| failed(&std::io::Error::other("it is not text in UTF-8")))?;
     Ok(SourceText::new(path, text))
 }
 

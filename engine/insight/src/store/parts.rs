@@ -8,6 +8,7 @@ use serde::Deserialize;
 
 use super::log::{LOG_FILE, log_names};
 use super::read_stored;
+use crate::disk::is_there;
 use engine::diagnostic::{Diagnostic, Result, SourceText, printable};
 use engine::digest::{Digest, hex};
 use engine::experiment::DIGEST_BYTES;
@@ -51,7 +52,7 @@ pub(super) fn check_parts(folder: &Path, run: &SourceText) -> Result<()> {
         return other(&path, &run.path).fail();
     }
     let path = folder.join(SUMMARY_FILE);
-    if !path.exists() {
+    if !is_there(&path)? {
         return Ok(());
     }
     let text = read_stored(&path)?;

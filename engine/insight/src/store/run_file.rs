@@ -220,6 +220,14 @@ pub struct StoredRun {
     pub decider: Decider,
 }
 
+/// The plan of a run that need not be finished, and its seed, from the `run.toml` of its folder.
+///
+/// # Errors
+/// If the file is missing, damaged or of another format.
+pub fn plan_of_run(folder: &Path, filters: Arc<Catalogue>) -> Result<(Plan, u64)> {
+    StoredRun::parse_plan(&read_stored(&folder.join(RUN_FILE))?, filters, MOST_ORIGINS)
+}
+
 impl StoredRun {
     /// Reads `run.toml` of a run's folder, and `policy.toml` unless the run combined policies and so holds them.
     ///

@@ -75,7 +75,7 @@ pub(super) fn open_pack(argument: &Path, allow_unsigned: bool) -> Result<Option<
         pack
     } else {
         match locked(argument)? {
-            Some((places, locked)) => places.shelf().get(&locked)?,
+            Some((places, locked)) => places.open(&locked)?,
             None => return Ok(None),
         }
     };

@@ -2,8 +2,8 @@
 
 use engine::diagnostic::Result;
 use insight::compare::{Comparison, Side, StateComparison, chance_words, compare_page};
+use insight::disk::write_atomic;
 use insight::folder::{create_folder, write_json};
-use insight::report::write_atomic;
 
 use super::sources::catalogue;
 use super::words::motion;

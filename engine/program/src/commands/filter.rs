@@ -11,9 +11,10 @@ use engine::sensors::observation::Image;
 use engine::sensors::{load_photograph, photograph_files};
 use engine::settings::Settings;
 use engine::state::Grid;
+use insight::disk::write_atomic;
 use insight::folder::create_folder;
 use insight::page::mask_png;
-use insight::report::{FrameData, FramePanel, Picture, frame, write_atomic};
+use insight::report::{FrameData, FramePanel, Picture, frame};
 use insight::store::StoredRun;
 use pack::Runnable;
 

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::filter::LINKED_IN;
+use insight::disk::write_atomic;
 use insight::folder::create_folder;
-use insight::report::write_atomic;
 
 use crate::cli::{NewArguments, NewCommand};
 use crate::console::{Console, ConsoleError};

@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use engine::diagnostic::{Diagnostic, nearest_name, printable};
+use insight::disk::write_atomic;
 use insight::folder::{create_folder, write_json};
-use insight::report::write_atomic;
 use paper::{CLAIMS, Campaign, Options, Reproduction, Verdict, figures, markdown, page, rows};
 
 use super::stop::{INTERRUPTED, on_ctrl_c};

@@ -2,36 +2,127 @@
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{
-    Overrides, Phase, Plan, Progress, RunLog, Spread, WINDOW_STEPS, in_parallel, run_only_seed, run_seed,
+    BrokenOff, Checkpoints, Kept, Overrides, Phase, Plan, Progress, RunLog, SeedRun, Spread, WINDOW_STEPS, can_be_kept,
+    in_parallel, run_only_seed, run_seed_kept,
 };
-use insight::folder::{IfTaken, RunFolder, SeedResult};
+use insight::folder::{IfTaken, RunFolder, SeedResult, Unfinished};
 use insight::record::{check_recording, record};
-use insight::store::going_on_from;
+use insight::store::{CheckpointWriter, going_on_from, plan_of_run};
 use insight::words::short;
 use pack::Runnable;
 
+use super::branch::Branch;
 use super::check;
 use super::print::{one_line, print_many, print_one};
 use super::sources::catalogue;
-use super::stop::{INTERRUPTED, on_ctrl_c};
+use super::stop::Stop;
 use crate::cli::RunArguments;
 use crate::console::{Console, ConsoleError};
 
+/// All that a run needs.
+struct Begun {
+    runnable: Runnable,
+    seeds: Vec<u64>,
+    folder: RunFolder,
+    /// Steps from one checkpoint to the next.
+    every: u64,
+    resumed: bool,
+    branch: Option<Branch>,
+}
+
 pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
+    let begun = match &arguments.resume {
+        Some(place) => resume(place, arguments)?,
+        None => begin(arguments, console)?,
+    };
+    let stop = Stop::on_signals()?;
+    let threads = arguments.threads.unwrap_or(0) as usize;
+    let results = match run_all(&begun, threads, &stop.flag, console) {
+        Ok(results) => results,
+        Err(error) => {
+            if begun.folder.can_be_resumed() {
+                console.note(&format!("what was learned until then is kept: {}", go_on(begun.folder.path())));
+            }
+            begun.folder.commit_broken()?;
+            return Err(error.into());
+        }
+    };
+    let Begun { runnable: Runnable { plan, unpacked: _unpacked }, seeds, folder, branch, .. } = begun;
+    let checked = if arguments.check { check::beside_a_run(&plan, threads, &stop.flag, console) } else { None };
+    folder.write(&plan, &results, checked.as_ref())?;
+    let (stopped, written) = (stop.status(), folder.path().to_owned());
+    let resumable = stopped.is_some() && folder.can_be_resumed();
+    match stopped {
+        Some(_) => folder.commit()?,
+        None => folder.commit_done(&seeds)?,
+    }
+    if let (Some(path), [SeedResult { log: Some(log), .. }]) = (&arguments.record, results.as_slice()) {
+        record_run(arguments.record_every, seeds[0], &plan, log, path, console)?;
+    }
+    let good = tell(arguments, &plan, &results, console)?;
+    if let (Some(branch), [SeedResult { log: Some(log), .. }]) = (&branch, results.as_slice()) {
+        branch.tell(&plan, &log.learning, console)?;
+    }
+    if let Some(report) = &checked {
+        check::print_short(console, report)?;
+    }
+    console.line(&format!("results:   {}", written.display()))?;
+    let Some((status, by)) = stopped else { return Ok(u8::from(!good)) };
+    let done = if plan.learns() { "learned" } else { "tested" };
+    console.note(&format!("stopped by {by}; what was {done} until then is kept"));
+    if resumable {
+        console.note(&go_on(&written));
+    }
+    Ok(status)
+}
+
+fn go_on(folder: &Path) -> String {
+    format!("go on with it: engine run --resume {}", folder.display())
+}
+
+/// Prints the figures; whether they are good enough.
+fn tell(
+    arguments: &RunArguments,
+    plan: &Plan,
+    results: &[SeedResult],
+    console: &mut Console,
+) -> std::result::Result<bool, ConsoleError> {
+    if let [result] = results {
+        console.json(&result.run.summary)?;
+        print_one(console, plan, &result.run.summary)?;
+        return Ok(result.run.summary.verdict.is_success());
+    }
+    let spread = Spread::new(results.iter().map(|result| result.run.summary.clone()).collect());
+    console.json(&spread)?;
+    print_many(console, &spread)?;
+    Ok(is_enough(arguments.enough, &spread))
+}
+
+/// A new run.
+fn begin(arguments: &RunArguments, console: &Console) -> Result<Begun> {
     let overrides = Overrides { steps: arguments.steps, ..arguments.changes.overrides() };
-    let Runnable { plan, unpacked: _unpacked } =
-        super::behaviour::open(&arguments.behaviour, &overrides, &arguments.filters, arguments.allow_unsigned)?;
-    let seeds = seeds(arguments)?;
+    let Some(behaviour) = &arguments.behaviour else {
+        return Diagnostic::new("E-SET", "no behaviour is given").help("write: engine run SCRIPT").fail();
+    };
+    let Runnable { plan, unpacked } =
+        super::behaviour::open(behaviour, &overrides, &arguments.filters, arguments.allow_unsigned)?;
     check_learning(arguments, &plan)?;
-    let plan = match &arguments.from {
-        Some(from) => going_on_from(plan, from, &seeds, &catalogue(&arguments.filters)?)?,
-        None => plan,
+    let (plan, seeds, branch) = match (&arguments.branch, &arguments.from) {
+        (Some(from), _) => {
+            let (plan, branch) = Branch::begin(plan, from, arguments.steps, &catalogue(&arguments.filters)?)?;
+            (plan, vec![branch.seed()], Some(branch))
+        }
+        (None, Some(from)) => {
+            let seeds = seeds(arguments)?;
+            (going_on_from(plan, from, &seeds, &catalogue(&arguments.filters)?)?, seeds, None)
+        }
+        (None, None) => (plan, seeds(arguments)?, None),
     };
     if let Some(path) = &arguments.record {
         check_record(path, &seeds)?;
@@ -46,35 +137,20 @@ pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::resul
     if folder.path() != wanted {
         console.note(&format!("'{}' holds another run, which stays: see 'results' below", wanted.display()));
     }
+    let runnable = Runnable { plan, unpacked };
+    Ok(Begun { runnable, seeds, folder, every: arguments.checkpoint, resumed: false, branch })
+}
 
-    let stop = on_ctrl_c()?;
-    let threads = arguments.threads.unwrap_or(0) as usize;
-    let results = run_all(&plan, &folder, &seeds, threads, &stop, console)?;
-    let checked = if arguments.check { check::beside_a_run(&plan, threads, &stop, console) } else { None };
-    folder.write(&plan, &results, checked.as_ref())?;
-    if let (Some(path), [SeedResult { log: Some(log), .. }]) = (&arguments.record, results.as_slice()) {
-        record_run(arguments, &plan, log, path, console)?;
+/// A run that was killed or stopped.
+fn resume(place: &Path, arguments: &RunArguments) -> Result<Begun> {
+    let (folder, unfinished) = RunFolder::resume(place)?;
+    let (plan, _) = plan_of_run(folder.work(), catalogue(&arguments.filters)?)?;
+    let seeds = unfinished.all_seeds();
+    if let Some(path) = &arguments.record {
+        check_record(path, &seeds)?;
     }
-    let good = if let [result] = results.as_slice() {
-        console.json(&result.run.summary)?;
-        print_one(console, &plan, &result.run.summary)?;
-        result.run.summary.verdict.is_success()
-    } else {
-        let spread = Spread::new(results.iter().map(|result| result.run.summary.clone()).collect());
-        console.json(&spread)?;
-        print_many(console, &spread)?;
-        is_enough(arguments.enough, &spread)
-    };
-    if let Some(report) = &checked {
-        check::print_short(console, report)?;
-    }
-    console.line(&format!("results:   {}", folder.path().display()))?;
-    if stop.load(Ordering::Relaxed) {
-        let done = if plan.learns() { "learned" } else { "tested" };
-        console.note(&format!("stopped by Ctrl-C; what was {done} until then is kept"));
-        return Ok(INTERRUPTED);
-    }
-    Ok(u8::from(!good))
+    let runnable = Runnable { plan, unpacked: None };
+    Ok(Begun { runnable, seeds, folder, every: unfinished.every, resumed: true, branch: None })
 }
 
 /// The seeds, from the first on.
@@ -126,9 +202,9 @@ fn check_learning(arguments: &RunArguments, plan: &Plan) -> Result<()> {
     Diagnostic::new("E-COMBINES", message).help(help).fail()
 }
 
-fn record_run(arguments: &RunArguments, plan: &Plan, log: &RunLog, path: &Path, console: &Console) -> Result<()> {
+fn record_run(every: u64, seed: u64, plan: &Plan, log: &RunLog, path: &Path, console: &Console) -> Result<()> {
     let phases = [(Phase::Learning, &log.learning), (Phase::Test, &log.test)];
-    let recording = record(plan, arguments.seed, &phases, arguments.record_every, path)?;
+    let recording = record(plan, seed, &phases, every, path)?;
     console.note(&format!(
         "recorded {} steps and {} images in {} ({} KiB)",
         recording.steps,
@@ -153,19 +229,14 @@ fn out(arguments: &RunArguments, name: &str, seeds: &[u64]) -> PathBuf {
     }
     let folder = match seeds {
         [first, .., last] => format!("{first}-{last}"),
-        _ => arguments.seed.to_string(),
+        [seed] => seed.to_string(),
+        [] => arguments.seed.to_string(),
     };
     Path::new("runs").join(name).join(folder)
 }
 
-fn run_all(
-    plan: &Plan,
-    folder: &RunFolder,
-    seeds: &[u64],
-    threads: usize,
-    stop: &AtomicBool,
-    console: &Console,
-) -> Result<Vec<SeedResult>> {
+fn run_all(begun: &Begun, threads: usize, stop: &AtomicBool, console: &Console) -> Result<Vec<SeedResult>> {
+    let Begun { runnable: Runnable { plan, .. }, seeds, folder, .. } = begun;
     let bar = console.bar(plan.settings.run.steps * seeds.len() as u64);
     let plain = bar.is_hidden() && seeds.len() == 1;
     let report = |progress: Progress| {
@@ -180,10 +251,9 @@ fn run_all(
         }
     };
     let told = InOrder::new(seeds);
-    let run_seed = if seeds.len() == 1 { run_only_seed } else { run_seed };
     let results = in_parallel(seeds, threads, |seed| {
         let (started, mut log) = (Instant::now(), RunLog::new(plan));
-        let mut run = match run_seed(plan, seed, stop, &report, &mut log) {
+        let mut run = match learn_seed(begun, seed, stop, &report, &mut log)? {
             Ok(run) => run,
             Err(broken) => {
                 if let Some(learned) = &broken.learned {
@@ -202,4 +272,32 @@ fn run_all(
     });
     bar.finish_and_clear();
     results
+}
+
+/// One seed, with its checkpoints.
+fn learn_seed(
+    begun: &Begun,
+    seed: u64,
+    stop: &AtomicBool,
+    report: &(dyn Fn(Progress) + Sync),
+    log: &mut RunLog,
+) -> Result<std::result::Result<SeedRun, Box<BrokenOff>>> {
+    let Begun { runnable: Runnable { plan, .. }, seeds, folder, every, resumed, .. } = begun;
+    let run_seed = if seeds.len() == 1 { run_only_seed } else { run_seed_kept };
+    if !can_be_kept(plan) {
+        return Ok(run_seed(plan, seed, stop, report, log, Checkpoints::NONE));
+    }
+    let after = if *resumed { folder.checkpoint(plan, seed)? } else { None };
+    let unfinished = Unfinished { seed: seeds[0], seeds: seeds.len() as u64, every: *every };
+    // Made with the first checkpoint: a short run has none.
+    let writer: Mutex<Option<CheckpointWriter>> = Mutex::new(None);
+    let keep = |kept: Kept<'_>| {
+        let mut writer = writer.lock().unwrap_or_else(PoisonError::into_inner);
+        if writer.is_none() {
+            *writer = Some(folder.keeper(plan, seed, after.as_ref())?);
+        }
+        writer.as_mut().map_or(Ok(()), |writer| folder.keep_checkpoint(writer, kept, unfinished))
+    };
+    let from = after.as_ref().map(|after| Kept { state: &after.state, records: &after.records, steps: after.steps });
+    Ok(run_seed(plan, seed, stop, report, log, Checkpoints { every: *every, from, keep: &keep }))
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use engine::diagnostic::{Diagnostic, Result};
 use engine::filter::{Catalogue, Sources, Trust, serve};
+use insight::disk::is_there;
 
 use crate::cli::{FilterSources, FilterWorkerArguments};
 use crate::console::ConsoleError;
@@ -20,7 +21,8 @@ pub(super) fn sources(arguments: &FilterSources) -> Result<Sources> {
     for digest in &arguments.allow_native {
         trust.allow(digest)?;
     }
-    if let Some(file) = arguments.trust.clone().or_else(own_trust_file) {
+    let own = arguments.trust.is_none().then(own_trust_file).transpose()?.flatten();
+    if let Some(file) = arguments.trust.clone().or(own) {
         trust.allow_file(&file)?;
     }
     let worker = match std::env::current_exe() {
@@ -32,12 +34,13 @@ pub(super) fn sources(arguments: &FilterSources) -> Result<Sources> {
 }
 
 /// The user's own trust file, if there is one.
-fn own_trust_file() -> Option<PathBuf> {
+fn own_trust_file() -> Result<Option<PathBuf>> {
     let folder = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
     let config = folder("ENGINE_CONFIG_DIR")
         .or_else(|| folder("XDG_CONFIG_HOME").map(|folder| folder.join("engine")))
-        .or_else(|| folder("HOME").map(|folder| folder.join(".config/engine")))?;
-    Some(config.join("trust.toml")).filter(|file| file.is_file())
+        .or_else(|| folder("HOME").map(|folder| folder.join(".config/engine")));
+    let Some(file) = config.map(|config| config.join("trust.toml")) else { return Ok(None) };
+    Ok(is_there(&file)?.then_some(file))
 }
 
 /// `engine filter-worker`: the other side of `--isolate`.

@@ -54,7 +54,7 @@ pub(crate) fn run(arguments: &TestArguments, console: &mut Console) -> Result<u8
     let test_seed = arguments.seed.unwrap_or(seed);
     let mut map = arguments.out.as_ref().and_then(|_| CertaintyGrid::new(&plan.layout, &plan.settings.laser));
     let tested = decider.test(&plan, test_seed, &stop, &mut map)?;
-    if let Some(folder) = &folder {
+    if let Some(folder) = folder {
         folder.write(&plan, &tested, map.as_ref())?;
     }
     let lines = base_lines(&plan, test_seed, &tested, &stop)?;

@@ -5,7 +5,7 @@ use std::path::Path;
 use engine::diagnostic::Diagnostic;
 use engine::script::{Upgrade, upgrade};
 use insight::compare::script_diff;
-use insight::report::write_atomic;
+use insight::disk::write_atomic;
 use serde::Serialize;
 
 use crate::cli::UpgradeArguments;

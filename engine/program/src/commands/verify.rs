@@ -5,7 +5,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use engine::diagnostic::{Diagnostic, Result, printable};
-use engine::experiment::{Decider, Learned, Overrides, Plan, RunLog, SeedRun, Spread, Summary, run_only_seed};
+use engine::experiment::{
+    Checkpoints, Decider, Learned, Overrides, Plan, RunLog, SeedRun, Spread, Summary, run_only_seed,
+};
 use engine::filter::Catalogue;
 use insight::folder::{CURVE_FILE, DISAGREEMENTS_FILE, Redrawn, RunFolder, SeedResult, curve_of, disagreements_of};
 use insight::lint::check_behaviour_until;
@@ -112,7 +114,7 @@ fn verify_seed(folder: &Path, filters: &Arc<Catalogue>, stop: &AtomicBool) -> Re
     };
     let plan = plan.clone().with_changes(&steps)?;
     let mut again = RunLog::new(&plan);
-    let (run, broken) = match run_only_seed(&plan, seed, stop, &|_| (), &mut again) {
+    let (run, broken) = match run_only_seed(&plan, seed, stop, &|_| (), &mut again, Checkpoints::NONE) {
         Ok(run) => (Some(run), None),
         // A run that a failure ended fails again, at the same step.
         Err(broken) if summary.is_none() => (None, broken.learned),

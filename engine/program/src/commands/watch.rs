@@ -104,7 +104,8 @@ fn finished(out: std::path::PathBuf) -> watch::Finished {
             folder.keep_log(plan, seed.seed, &log)?;
             results.push(SeedResult { run: one, log: (!many).then_some(log) });
         }
-        folder.write(plan, &results, None)
+        folder.write(plan, &results, None)?;
+        folder.commit()
     })
 }
 

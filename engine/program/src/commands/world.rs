@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use engine::diagnostic::{Diagnostic, printable};
 use engine::world::{FAMILIES, FamilyRange};
-use insight::report::write_atomic;
+use insight::disk::write_atomic;
 
 use crate::cli::{WorldArguments, WorldCommand};
 use crate::console::{Console, ConsoleError};

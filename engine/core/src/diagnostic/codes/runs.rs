@@ -5,6 +5,20 @@ use super::Kind;
 /// Each code with its page, in the order of the alphabet.
 pub(super) const PAGES: &[(&str, Kind, &str)] = &[
     (
+        "E-BRANCH",
+        Kind::State,
+        "A run cannot be branched: there is no such step, or the script differs from that of the run in more than rules, the \
+         learner's settings and numbers of steps.\n\
+         Write for example: engine run mine.rhai --branch runs/wall/1@200.",
+    ),
+    (
+        "E-CHECKPOINT",
+        Kind::State,
+        "A run cannot be gone on with: there is no checkpoint in its place, it is damaged, of another engine or of another run.\n\
+         A damaged one is never believed, and never replaced by nothing: what stands in the folder stays. Start the run anew with \
+         engine run SCRIPT --force; the same seed leaves the same bytes.",
+    ),
+    (
         "E-CODE",
         Kind::Usage,
         "The word that was to be explained looks like a code, but no message of this engine has it.\n\
@@ -36,6 +50,13 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
         "A file or folder could not be read or written; the message has the system's reason.\n\
          Look at the path, its permissions and the room on the disk. Old files are unchanged: a new one \
          replaces them only when it is whole.",
+    ),
+    (
+        "E-LOCKED",
+        Kind::Disk,
+        "Another process is writing to that folder or file; the message names it, its command and since when.\n\
+         Two that write to one place would mix what they write. Wait until the other has ended, or write to another place, such \
+         as --out runs/mine/1. A process that was killed holds nothing.",
     ),
     (
         "E-LOG-DIFFERS",
@@ -145,6 +166,12 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
         "The folder that --out names holds another run, which would be lost.\n\
          A run of the same script, settings and seed leaves the same files, and may be written again. Name another folder, \
          or say --force to replace what is there. Without --out, another run goes to the next number: runs/wall/1.2.",
+    ),
+    (
+        "E-RUN-UNFINISHED",
+        Kind::Disk,
+        "A run into the same folder was killed, and has left a checkpoint: it would be lost.\n\
+         Go on with it, bit for bit as if nothing had happened: engine run --resume runs/wall/1. Or start anew, with --force.",
     ),
     (
         "E-SIGNAL",

@@ -205,6 +205,27 @@ impl Ledger {
         }
     }
 
+    /// The records of the last leg as they are stored, and the steps that were done in it.
+    #[must_use]
+    pub fn stored(&self) -> (&[u8], u64) {
+        (&self.bytes, self.steps)
+    }
+
+    /// Goes on after records of the same plan that were stored, see [`Ledger::stored`]. False if they do not fit: then it is
+    /// as it was.
+    #[must_use]
+    pub fn go_on_after(&mut self, records: &[u8], steps: u64) -> bool {
+        let whole = records.len().is_multiple_of(self.shape.bytes());
+        let done = (records.len() / self.shape.bytes()) as u64;
+        let fits = whole && self.is_empty() && records.len() <= self.most && done <= steps;
+        if fits && (done == steps || records.len() == self.most) {
+            self.bytes.extend_from_slice(records);
+            self.steps = steps;
+            return true;
+        }
+        false
+    }
+
     /// Forgets all records; their room is kept.
     pub(super) fn clear(&mut self) {
         self.bytes.clear();

@@ -1,11 +1,11 @@
 //! A run with its log, read back from its folder.
 
-use std::fs::File;
-use std::io::Read;
+use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::Arc;
 
 use super::{LOG_FILE, damaged, read_log};
+use crate::disk::{is_there, read_file};
 use crate::store::{StoredRun, read_stored};
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Decider, RunLog, Summary};
@@ -42,7 +42,7 @@ impl RecordedRun {
             log.test.set_out_from(policy.kept());
         }
         let path = folder.join("summary.json");
-        if log.test.is_empty() && !log.learning.is_empty() && !path.exists() {
+        if log.test.is_empty() && !log.learning.is_empty() && !is_there(&path)? {
             return Ok(Self { stored, log, summary: None });
         }
         let text = read_stored(&path)?;
@@ -64,16 +64,14 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>> {
         Diagnostic::new("E-LOG-FILE", message)
             .help("give the folder of one seed, such as runs/wall/1 or runs/wall/1-30/7; an older run has no log: run it again")
     };
-    let failed = |error: std::io::Error| Box::new(unfit(Diagnostic::disk("read", path, &error).message));
-    let is_file = std::fs::metadata(path).map_err(failed)?.is_file();
-    if !is_file {
-        return unfit(format!("'{}' is not a file", path.display())).fail();
+    match read_file(path, MAX_BYTES) {
+        Ok(bytes) => Ok(bytes),
+        Err(error) if error.kind() == ErrorKind::FileTooLarge => {
+            damaged(format!("'{}' has more than {MAX_BYTES} bytes", path.display())).fail()
+        }
+        Err(error) if error.kind() == ErrorKind::InvalidInput => {
+            unfit(format!("'{}' is not a file", path.display())).fail()
+        }
+        Err(error) => unfit(Diagnostic::disk("read", path, &error).message).fail(),
     }
-    let mut bytes = Vec::new();
-    let file = File::open(path).map_err(failed)?;
-    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(failed)?;
-    if bytes.len() as u64 > MAX_BYTES {
-        return damaged(format!("'{}' has more than {MAX_BYTES} bytes", path.display())).fail();
-    }
-    Ok(bytes)
 }

@@ -24,6 +24,7 @@ pub(super) fn install(arguments: &InstallArguments, console: &mut Console) -> st
     let places = Places::find()?;
     let fetched = fetch(&arguments.source, arguments.name.as_deref())?;
     let folder = fetched.folder.clone();
+    let held = places.hold()?;
     let mut accepted = vec![accept(fetched, &places, arguments, console)?];
     // Everything is accepted before anything is written.
     for dependency in dependencies(&accepted[0].pack, folder.as_deref(), &places, arguments)? {
@@ -34,7 +35,7 @@ pub(super) fn install(arguments: &InstallArguments, console: &mut Console) -> st
         shelf.put(pack, signature.as_ref())?;
     }
     let locked: Vec<Locked> = accepted.iter().map(|accepted| Locked::new(&accepted.pack, &accepted.signer)).collect();
-    places.change(|lock| locked.iter().for_each(|locked| lock.put(locked.clone())))?;
+    places.change(&held, |lock| locked.iter().for_each(|locked| lock.put(locked.clone())))?;
     console.json(&json!({ "installed": locked }))?;
     for locked in &locked {
         console.line(&format!(

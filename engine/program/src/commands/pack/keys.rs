@@ -4,7 +4,7 @@ use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use engine::diagnostic::{Diagnostic, Result};
-use insight::report::write_atomic;
+use insight::disk::write_atomic;
 use pack::{Pack, Password, key_id, key_line, needs_password, new_keys};
 use serde_json::json;
 
@@ -48,8 +48,9 @@ pub(super) fn sign(arguments: &SignArguments, console: &mut Console) -> std::res
 
 pub(super) fn trust(arguments: &TrustArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
     let places = Places::find()?;
-    let mut store = places.trust()?;
     let TrustArguments { owner, key, replace, revoke } = arguments;
+    let _held = key.as_ref().map(|_| places.hold_trust()).transpose()?;
+    let mut store = places.trust()?;
     match (owner, key) {
         (_, None) => {
             console.json(&store)?;

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use engine::diagnostic::Result;
+use insight::disk::write_atomic;
 use insight::folder::create_folder;
-use insight::report::write_atomic;
 use pack::{Card, Locked, Pack, Signature, gallery, signature_line};
 use serde_json::json;
 
@@ -68,13 +68,14 @@ fn installed(places: &Places) -> Result<Vec<ListedPack>> {
 
 pub(super) fn remove(arguments: &RemoveArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
     let places = Places::find()?;
+    let held = places.hold()?;
     let (lock, index) = (places.lock()?, places.index()?);
     let named = index.find(&arguments.name).or_else(|error| lock.find(&arguments.name).map_err(|_| error))?;
     let (name, shelf) = (named.name.clone(), places.shelf());
     for locked in [lock.get(&name), index.get(&name)].into_iter().flatten() {
         shelf.remove(locked.content)?;
     }
-    places.change(|lock| lock.take(&name))?;
+    places.change(&held, |lock| lock.take(&name))?;
     console.json(&json!({ "removed": name }))?;
     console.line(&format!("removed:   {name} {}, key {}", named.version, key_shown(named.key.as_deref())))?;
     Ok(0)

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use engine::diagnostic::Diagnostic;
 use engine::experiment::{Progress, WINDOW_STEPS};
-use insight::report::write_atomic;
+use insight::disk::write_atomic;
 use pack::{Pack, PackName, draft, scaffold};
 use serde_json::json;
 

@@ -3,10 +3,17 @@
 use std::path::{Path, PathBuf};
 
 use engine::diagnostic::{Diagnostic, Result, printable};
+use insight::disk;
+use insight::folder::create_folder;
 use pack::{Dependency, Lock, Locked, Pack, Shelf, Signature, TrustStore};
 
 /// The lock of the folder where the user stands.
 const LOCK: &str = "engine.lock";
+
+/// The right to change what is installed, until it is dropped.
+pub(super) struct Held {
+    _locks: [disk::Lock; 2],
+}
 
 /// The user's folders.
 #[derive(Debug, Clone)]
@@ -44,10 +51,36 @@ impl Places {
         Lock::load(&self.data.join(LOCK))
     }
 
-    /// Changes the lock of this folder and the list of all installed packs alike.
-    pub(super) fn change(&self, change: impl Fn(&mut Lock)) -> Result<()> {
-        std::fs::create_dir_all(&self.data)
-            .map_err(|error| Box::new(Diagnostic::disk("create the folder", &self.data, &error)))?;
+    /// Keeps other processes from changing the lock of this folder and the list of all installed packs.
+    pub(super) fn hold(&self) -> Result<Held> {
+        create_folder(&self.data)?;
+        Ok(Held { _locks: [disk::Lock::take(&self.data.join(LOCK))?, disk::Lock::take(Path::new(LOCK))?] })
+    }
+
+    /// Keeps other processes from changing whom the user trusts.
+    pub(super) fn hold_trust(&self) -> Result<disk::Lock> {
+        create_folder(&self.config)?;
+        disk::Lock::take(&self.trust_path())
+    }
+
+    /// An installed pack, judged as if it were installed now: its bytes by the lock, its signature by whom the user trusts.
+    pub(in crate::commands) fn open(&self, locked: &Locked) -> Result<Pack> {
+        let (shelf, pack) = (self.shelf(), self.shelf().get(locked)?);
+        let signer = self.trust()?.judge(&pack, shelf.signature(locked.content)?.as_ref(), locked.key.is_none())?;
+        if signer.key() == locked.key.as_deref() {
+            return Ok(pack);
+        }
+        let message = format!("the installed {} is not signed by the key that it was installed with", pack.title());
+        let help = format!(
+            "ask '{}' over another way; to start anew: engine pack remove {}",
+            locked.name.owner(),
+            locked.name
+        );
+        Diagnostic::new("E-TRUST-KEY-CHANGED", message).help(help).fail()
+    }
+
+    /// Changes the lock of this folder and the list of all installed packs alike, which nobody else may meanwhile.
+    pub(super) fn change(&self, _held: &Held, change: impl Fn(&mut Lock)) -> Result<()> {
         let (mut index, mut lock) = (self.index()?, self.lock()?);
         change(&mut index);
         change(&mut lock);
@@ -78,7 +111,7 @@ impl Places {
         let (lock, index) = (self.lock()?, self.index()?);
         let fits = |locked: &&Locked| dependency.version.matches(&locked.version);
         match lock.get(&dependency.name).or_else(|| index.get(&dependency.name)).filter(fits) {
-            Some(locked) => self.shelf().get(locked),
+            Some(locked) => self.open(locked),
             None => {
                 let message = format!(
                     "{} builds on {} {}, which is not installed",
@@ -114,7 +147,7 @@ pub(super) fn signature_path(pack: &Path) -> PathBuf {
 /// The signature beside a pack's file, if there is one.
 pub(in crate::commands) fn signature_of(pack: &Path) -> Result<Option<Signature>> {
     let path = signature_path(pack);
-    if !path.exists() {
+    if !disk::is_there(&path)? {
         return Ok(None);
     }
     read_text(&path).and_then(|text| Signature::parse(&text)).map(Some)

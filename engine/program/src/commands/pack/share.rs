@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use engine::diagnostic::{Diagnostic, Result, printable};
+use insight::disk::write_atomic;
 use insight::folder::create_folder;
-use insight::report::write_atomic;
 use pack::{Pack, Signature};
 use serde_json::json;
 
