@@ -16,6 +16,8 @@ mod bad_input;
 mod bench;
 /// The page in a real browser, from a file and live; pictures of it in `target/browser`.
 mod browser;
+/// A bound in worlds that nobody has seen: the same bytes, drawn again, its worst draws.
+mod certify;
 /// Learned policies combined: files, figures, disagreements, mistakes.
 mod combine;
 /// Runs beside one another, listed, tagged and pruned; many seeds in their order.

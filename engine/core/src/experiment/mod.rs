@@ -6,6 +6,7 @@ mod base_lines;
 mod by_world;
 mod carrying;
 mod certainty;
+mod certify;
 mod changes;
 mod choosers;
 mod co_driver;
@@ -54,6 +55,10 @@ pub use base_lines::{base_lines, test_untrained};
 pub use by_world::WorldFigures;
 pub use carrying::rejudge;
 pub use certainty::CertaintyGrid;
+pub use certify::{
+    Aim, Asked, Certificate, CertifiedRate, CertifiedShare, DRAWS, HardDraw, MOST_DRAWS, certify, count_bounds, rate_bounds,
+    share_bounds,
+};
 pub use choosers::{ByState, Frozen, Learns};
 use choosers::{Recorded, Together};
 pub use co_driver::Hand;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::SeedResult;
+use super::{CERTIFICATE_FILE, SeedResult};
 use super::pages::PAGE_FILE;
 use super::pictures::PICTURES;
 use crate::report::{CurveRow, curve_csv, disagreements_csv, write_atomic};
@@ -43,7 +43,9 @@ pub const DISAGREEMENTS_FILE: &str = "disagreements.csv";
 /// Removes pictures and a page that an older run drew in a folder: of many seeds only one has pictures, and not always the same.
 pub(super) fn remove_drawn(folder: &Path) -> Result<()> {
     let pictures = PICTURES.iter().flat_map(|stem| ["svg", "png"].map(|ending| format!("{stem}.{ending}")));
-    for name in pictures.chain([PAGE_FILE.to_owned()]) {
+    // A certificate is of the policy that stood here.
+    let certificate = [CERTIFICATE_FILE, "certificate.svg", "certificate.png"].map(str::to_owned);
+    for name in pictures.chain([PAGE_FILE.to_owned()]).chain(certificate) {
         let path = folder.join(name);
         match std::fs::remove_file(&path) {
             Err(error) if error.kind() != std::io::ErrorKind::NotFound => {

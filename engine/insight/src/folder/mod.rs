@@ -1,5 +1,6 @@
 //! A run's folder, written: what `store` reads again, the pictures of `report` and the page of `page`.
 
+mod certificate;
 mod drawn;
 mod files;
 mod pages;
@@ -18,6 +19,7 @@ use engine::experiment::{Learned, Plan, RunLog, SeedRun, Spread};
 use files::{remove_drawn, write_log, write_policy, write_run, write_seed};
 use taken::{Claim, taken};
 
+pub use certificate::{CERTIFICATE_FILE, CertificateFolder, certificate_lines, read_certificate};
 pub use drawn::Redrawn;
 pub use files::{CURVE_FILE, DISAGREEMENTS_FILE, create_folder, curve_of, disagreements_of, write_json};
 pub use removal::remove_run;

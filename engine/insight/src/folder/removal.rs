@@ -2,15 +2,24 @@
 
 use std::path::{Path, PathBuf};
 
-use super::CURVE_FILE;
+use super::{CERTIFICATE_FILE, CURVE_FILE, certificate::CERTIFICATE_PICTURE};
 use super::pages::PAGE_FILE;
 use super::pictures::PICTURES;
 use crate::store::{LOG_FILE, POLICY_FILE, RUN_FILE, SUMMARY_FILE, TAG_FILE, read_stored};
 use engine::diagnostic::{Diagnostic, Result};
 
 /// Files of a run under names of their own.
-const FILES: [&str; 8] =
-    [RUN_FILE, SUMMARY_FILE, POLICY_FILE, LOG_FILE, CURVE_FILE, PAGE_FILE, TAG_FILE, "disagreements.csv"];
+const FILES: [&str; 9] = [
+    RUN_FILE,
+    SUMMARY_FILE,
+    POLICY_FILE,
+    LOG_FILE,
+    CURVE_FILE,
+    PAGE_FILE,
+    TAG_FILE,
+    CERTIFICATE_FILE,
+    "disagreements.csv",
+];
 /// What `engine rescore` writes into a folder of its own within the run's.
 const RESCORE: &str = "rescore-";
 const RESCORE_FILES: [&str; 3] = ["rescore.json", "policy-diff.svg", "policy-diff.png"];
@@ -61,7 +70,7 @@ fn is_of_a_run(name: &str) -> bool {
         let step = stem.strip_prefix("step-").and_then(|rest| rest.rsplit_once('-'));
         step.is_some_and(|(_, side)| ["before", "after"].contains(&side))
     };
-    FILES.contains(&name) || picture.is_some_and(|stem| PICTURES.contains(&stem) || explained(stem))
+    FILES.contains(&name) || picture.is_some_and(|stem| PICTURES.contains(&stem) || stem == CERTIFICATE_PICTURE || explained(stem))
 }
 
 #[cfg(test)]
@@ -81,7 +90,7 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         let run = place.path().join("1-2");
         write(&run, &["run.toml", "summary.json", "paths.svg", "tag.txt", "1/run.toml", "1/log.bin", "2/run.toml"]);
-        write(&run, &["step-7-before.png", "rescore-mine/rescore.json"]);
+        write(&run, &["step-7-before.png", "rescore-mine/rescore.json", "certificate.json", "certificate.svg"]);
         assert_eq!(remove_run(&run).unwrap(), Vec::<PathBuf>::new());
         assert!(!run.exists());
     }

@@ -6,6 +6,7 @@ mod atomic;
 mod axes;
 mod canvas;
 mod certainty;
+mod certified;
 mod csv;
 mod curve;
 mod curves;
@@ -26,6 +27,8 @@ mod vector;
 
 pub use atomic::write_atomic;
 pub use certainty::certainty_grid;
+pub(crate) use certified::MOST_PANELS;
+pub use certified::{CertifiedData, certified};
 pub use csv::{CurveRow, curve_csv};
 pub use curve::{CurveData, learning_curve};
 pub use curves::{CurveGroup, CurveStyle, compared_curves, has_bands};

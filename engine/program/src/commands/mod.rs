@@ -2,6 +2,7 @@
 
 mod behaviour;
 pub(crate) mod bench;
+pub(crate) mod certify;
 pub(crate) mod check;
 pub(crate) mod compare;
 pub(crate) mod explain;
