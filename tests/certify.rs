@@ -41,10 +41,16 @@ fn a_certificate_has_the_same_bytes_with_any_number_of_threads_and_is_drawn_agai
     certify(&bench, &[&few[..], &["--threads", "3", "--out", "b"]].concat());
     assert_eq!(bytes, bench.read("b/certificate.json"));
     // Its own family is that which the world is named after.
-    assert_eq!((&one["worlds"][0], &one["draws"], &one["each_its_own_world"]), (&"rooms".into(), &6.into(), &true.into()));
+    assert_eq!(
+        (&one["worlds"][0], &one["draws"], &one["each_its_own_world"]),
+        (&"rooms".into(), &6.into(), &true.into())
+    );
     assert_eq!(one["failures"]["steps"], 720);
     assert_eq!(one["untrained_failures"]["steps"], 720);
     assert!(bench.path().join("a/certificate.svg").exists() && bench.path().join("a/certificate.png").exists());
+    // It stands in the page, which is otherwise the one that was drawn.
+    assert_eq!(bench.read("a/report.html").matches("id=\"certificate\"").count(), 1);
+    assert_eq!(bench.engine(&["replay", "a", "--verify"]).status.code(), Some(0));
     let again = bench.engine(&["certify", "a", "--again"]);
     assert!(String::from_utf8_lossy(&again.stdout).contains("every figure of certificate.json comes out the same"));
     let others = bench.engine(&["certify", "a", "--again", "--seed", "77"]);
@@ -61,12 +67,24 @@ fn the_worst_draw_is_the_test_that_its_command_does_again() {
     let (worst, all) = (&certificate["worst"][0], certificate["failures"]["failures"].as_u64().unwrap());
     let (world, seed) = (worst["world"].as_str().unwrap(), worst["seed"].to_string());
     let again = bench.engine(&[
-        "test", "a", "--world", world, "--seed", &seed, "--steps", "150", "--set", "camera.noise=4", "--json",
+        "test",
+        "a",
+        "--world",
+        world,
+        "--seed",
+        &seed,
+        "--steps",
+        "150",
+        "--set",
+        "camera.noise=4",
+        "--json",
     ]);
     let again: Value = serde_json::from_slice(&again.stdout).unwrap();
     assert_eq!(again["failures"], worst["failures"]);
     assert_eq!(again["untrained"]["failures_per_1000"], worst["untrained_per_1000"]);
-    let sum = |spread: &Value| spread.as_array().unwrap().iter().map(|pair| pair[0].as_u64().unwrap() * pair[1].as_u64().unwrap()).sum::<u64>();
+    let sum = |spread: &Value| {
+        spread.as_array().unwrap().iter().map(|pair| pair[0].as_u64().unwrap() * pair[1].as_u64().unwrap()).sum::<u64>()
+    };
     assert_eq!(sum(&certificate["spread"]), all);
 }
 
@@ -88,10 +106,15 @@ fn worlds_that_it_learned_in_are_told_and_what_cannot_be_drawn_is_one_error() {
     assert!(refused(&bench, &["a"], 3).contains("engine") || refused(&bench, &["a"], 3).contains("certificate"));
     assert!(refused(&bench, &["a", "--worlds", "romos:3", "--out", "x"], 3).contains("there is no family of worlds"));
     assert!(refused(&bench, &["a", "--again", "--draws", "3"], 2).contains("cannot be used with"));
-    assert!(refused(&bench, &["a", "--set", "learner.kind=q", "--out", "x"], 3).contains("nothing is learned in a test"));
+    assert!(
+        refused(&bench, &["a", "--set", "learner.kind=q", "--out", "x"], 3).contains("nothing is learned in a test")
+    );
     bench.engine(&["run", "short.rhai", "--out", "small"]);
     let message = refused(&bench, &["small"], 2);
-    assert!(message.contains("there is no family of worlds like 'small'") && message.contains("--worlds small"), "{message}");
+    assert!(
+        message.contains("there is no family of worlds like 'small'") && message.contains("--worlds small"),
+        "{message}"
+    );
     // A run that is done again has no certificate of what stood there before.
     bench.engine(&["run", "room.rhai", "--out", "a", "--force"]);
     assert!(!bench.path().join("a/certificate.json").exists());

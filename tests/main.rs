@@ -75,6 +75,8 @@ mod photos;
 mod places;
 /// Recordings for viewers, read back by another reader.
 mod recording;
+/// Frames that another renderer drew are what this one sees.
+mod rendered;
 /// Recorded runs through the program: replayed, explained, rescored, damaged.
 mod replay;
 /// The paper's claims through the program, quickly; the map that a test leaves.

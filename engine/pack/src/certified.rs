@@ -47,12 +47,17 @@ pub(super) fn certificate_of(
 ///
 /// # Errors
 /// `E-PACK-EVIDENCE` if it is drawn from files, or by a seed that is not its policy's; `E-PACK-LIMIT` if it takes too long.
-pub(super) fn certificate_difference(pack: &Pack, runnable: &Runnable, stop: &AtomicBool) -> Result<Option<Difference>> {
+pub(super) fn certificate_difference(
+    pack: &Pack,
+    runnable: &Runnable,
+    stop: &AtomicBool,
+) -> Result<Option<Difference>> {
     let Some(evidence) = &pack.manifest().evidence else { return Ok(None) };
     let (Some(claimed), Some(policy)) = (&evidence.certificate, pack.policy(&runnable.plan)?) else { return Ok(None) };
     let text = pack.manifest().entry.policy.as_ref().and_then(|path| pack.file(path.as_str())).unwrap_or_default();
     if claimed.seed != seed_of(text) || !claimed.set.is_empty() {
-        let message = format!("the certificate of {} is drawn by a seed or settings of its author's choice", pack.title());
+        let message =
+            format!("the certificate of {} is drawn by a seed or settings of its author's choice", pack.title());
         return malformed("E-PACK-EVIDENCE", message).help("draw your own: engine certify PACK").fail();
     }
     let again = drawn(runnable, &Decider::Learned(policy), &claimed.asked(), 0, stop)?;

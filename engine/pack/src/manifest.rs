@@ -141,7 +141,8 @@ impl Manifest {
         }
         let ManifestFormat { format } = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
         if ![FORMAT, FORMAT_OF_CERTIFICATE].contains(&format) {
-            let message = format!("the pack has format {format}, this engine reads formats {FORMAT} and {FORMAT_OF_CERTIFICATE}");
+            let message =
+                format!("the pack has format {format}, this engine reads formats {FORMAT} and {FORMAT_OF_CERTIFICATE}");
             return malformed("E-PACK-FORMAT", message).help("use a newer engine").fail();
         }
         let manifest: Self = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;

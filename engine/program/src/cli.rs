@@ -273,7 +273,8 @@ pub(crate) struct ReproduceArguments {
 pub(crate) struct FilterArguments {
     /// The behaviour: a script such as scripts/wall.rhai, a .pack file, a pack's folder, or an installed pack's name
     pub(crate) behaviour: PathBuf,
-    /// PNG or JPEG files, or folders of them; at most 64 MiB and 50 megapixels each
+    /// PNG or JPEG files, or folders of them; at most 64 MiB and 50 megapixels each. For a filter that reads depth: PNG files of
+    /// 16 bits in millimetres, 0 where nothing was measured
     #[arg(required = true)]
     pub(crate) image: Vec<PathBuf>,
     /// The view to see through, of a script that has several; the first one otherwise

@@ -56,8 +56,8 @@ pub use by_world::WorldFigures;
 pub use carrying::rejudge;
 pub use certainty::CertaintyGrid;
 pub use certify::{
-    Aim, Asked, Certificate, CertifiedRate, CertifiedShare, DRAWS, HardDraw, MOST_DRAWS, certify, count_bounds, rate_bounds,
-    share_bounds,
+    Aim, Asked, Certificate, CertifiedRate, CertifiedShare, DRAWS, HardDraw, MOST_DRAWS, certify, count_bounds,
+    rate_bounds, share_bounds,
 };
 pub use choosers::{ByState, Frozen, Learns};
 use choosers::{Recorded, Together};

@@ -1,7 +1,7 @@
 //! What is drawn anew for each attempt, and which parts of a robot and its world that touches.
 
 use crate::random::{Random, Stream};
-use crate::settings::{RecoverTo, Settings, Value, Varied, VariedKey, apply};
+use crate::settings::{RecoverTo, Settings, TEXTURES, Value, Varied, VariedKey, apply};
 use crate::world::Mover;
 
 /// Draws the values of `randomise`, in the order of its keys.
@@ -29,6 +29,8 @@ pub(super) struct Touched {
     pub(super) start_yaw_deg: f64,
     /// By material: grey levels to add.
     levels: Vec<(String, f64)>,
+    /// By material: the kind of its texture.
+    textures: Vec<(String, &'static str)>,
     /// By mover: how many times as fast it is.
     speeds: Vec<(String, f64)>,
 }
@@ -64,6 +66,10 @@ impl Variation {
                 Some((VariedKey::StartShift, _)) => touched.start_shift_m = *drawn,
                 Some((VariedKey::Colour(name), _)) => set(&mut touched.levels, name, *drawn),
                 Some((VariedKey::Mover(name), _)) => set(&mut touched.speeds, name, *drawn),
+                Some((VariedKey::Texture(name), _)) => {
+                    let own = touched.textures.iter_mut().filter(|(own, _)| own == name);
+                    own.for_each(|(_, kind)| *kind = texture(varied, *drawn));
+                }
                 None => {}
             }
         }
@@ -94,6 +100,10 @@ impl Touched {
                 self.colours = true;
                 self.levels.push((name.to_owned(), 0.0));
             }
+            VariedKey::Texture(name) => {
+                self.colours = true;
+                self.textures.push((name.to_owned(), TEXTURES[0]));
+            }
             VariedKey::Mover(name) => {
                 self.movers = true;
                 self.speeds.push((name.to_owned(), 1.0));
@@ -105,9 +115,20 @@ impl Touched {
         of(&self.speeds, mover).unwrap_or(1.0)
     }
 
+    /// The kind of a material's texture, if that is drawn.
+    pub(super) fn texture_of(&self, material: &str) -> Option<&'static str> {
+        self.textures.iter().find(|(own, _)| own == material).map(|(_, kind)| *kind)
+    }
+
     pub(super) fn levels_of(&self, material: &str) -> Option<f64> {
         of(&self.levels, material)
     }
+}
+
+/// The kind that was drawn; the script was refused if it is none.
+fn texture(varied: &Varied, drawn: f64) -> &'static str {
+    let Value::Text(word) = varied.value(drawn) else { return TEXTURES[0] };
+    TEXTURES.into_iter().find(|kind| *kind == word).unwrap_or(TEXTURES[0])
 }
 
 fn of(pairs: &[(String, f64)], name: &str) -> Option<f64> {

@@ -29,7 +29,9 @@ impl<'a> CertificateFolder<'a> {
         if !force && path.join(CERTIFICATE_FILE).exists() {
             let shown = printable(&path.display().to_string());
             let error = Diagnostic::new("E-RUN-TAKEN", format!("'{shown}' holds a certificate"));
-            return error.help("draw it again with --again, replace it with --force, or name another folder with --out").fail();
+            return error
+                .help("draw it again with --again, replace it with --force, or name another folder with --out")
+                .fail();
         }
         super::create_folder(path)?;
         Ok(Self(path))
@@ -49,7 +51,7 @@ impl<'a> CertificateFolder<'a> {
             };
             let plan = plan.clone().with_changes(&there)?;
             let tested = decider.test(&plan, draw.seed, &AtomicBool::new(false), &mut ())?;
-            let name = format!("{}, seed {}: {} failures", draw.world, draw.seed, draw.failures);
+            let name = format!("{}: {} failures; its first 800 steps", draw.world, draw.failures);
             Ok((name, plan, tested))
         };
         let worst = worst.map(again).collect::<Result<Vec<_>>>()?;
@@ -121,15 +123,22 @@ fn drawn_from(certificate: &Certificate) -> String {
 /// The statement in a few lines.
 #[must_use]
 pub fn certificate_lines(certificate: &Certificate) -> Vec<String> {
-    let Certificate { success, failures, failing, untrained_success, untrained_failures, steps, seed, learned_in, .. } =
-        certificate;
+    let Certificate {
+        success, failures, failing, untrained_success, untrained_failures, steps, seed, learned_in, ..
+    } = certificate;
     let unit = if certificate.each_its_own_world { "worlds" } else { "draws" };
     let share = |of: &CertifiedShare| {
         format!("{} of {}, {} to {} % of all", of.draws, certificate.draws, percent(of.low), percent(of.high))
     };
-    let rate = |of: &CertifiedRate| format!("{} ({} to {})", three_figures(of.per_1000), three_figures(of.low), three_figures(of.high));
+    let rate = |of: &CertifiedRate| {
+        format!("{} ({} to {})", three_figures(of.per_1000), three_figures(of.low), three_figures(of.high))
+    };
     let mut lines = vec![
-        format!("{}, {} steps in each, drawn by seed {seed}; in brackets and as shares of all: 95 %.", drawn_from(certificate), whole(*steps)),
+        format!(
+            "{}, {} steps in each, drawn by seed {seed}; in brackets and as shares of all: 95 %.",
+            drawn_from(certificate),
+            whole(*steps)
+        ),
         format!("Success: {} such {unit}; a robot that knows nothing: {}.", share(success), share(untrained_success)),
         format!(
             "Failures in 1,000 steps: {}; a robot that knows nothing: {}.",
@@ -139,14 +148,23 @@ pub fn certificate_lines(certificate: &Certificate) -> Vec<String> {
         format!("A failure in {steps} steps: {} such {unit}.", share(failing)),
     ];
     if *learned_in > 0 {
-        lines.push(format!("{learned_in} draws are in worlds in which it learned: there, only seeds and starts are unseen."));
+        lines.push(format!(
+            "{learned_in} draws are in worlds in which it learned: there, only seeds and starts are unseen."
+        ));
     }
     if let Some(aim) = certificate.aim {
         let reached = if aim.reached { "reached" } else { "not reached" };
         let pilot = aim.pilot_per_1000.map_or(String::new(), |rate| {
-            format!("; a pilot of {} other draws had {} and said how many to take", aim.pilot_draws, three_figures(rate))
+            format!(
+                "; a pilot of {} other draws had {} and said how many to take",
+                aim.pilot_draws,
+                three_figures(rate)
+            )
         });
-        lines.push(format!("Aim: below {} failures in 1,000 steps, upper end: {reached}{pilot}.", three_figures(aim.per_1000)));
+        lines.push(format!(
+            "Aim: below {} failures in 1,000 steps, upper end: {reached}{pilot}.",
+            three_figures(aim.per_1000)
+        ));
     }
     lines
 }

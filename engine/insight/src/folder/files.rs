@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use super::{CERTIFICATE_FILE, SeedResult};
 use super::pages::PAGE_FILE;
 use super::pictures::PICTURES;
+use super::{CERTIFICATE_FILE, SeedResult};
 use crate::report::{CurveRow, curve_csv, disagreements_csv, write_atomic};
 use crate::store::{LOG_FILE, POLICY_FILE, RUN_FILE, SUMMARY_FILE, log_to_bytes, policy_to_toml, run_to_toml};
 use engine::diagnostic::{Diagnostic, Result};

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{CERTIFICATE_FILE, CURVE_FILE, certificate::CERTIFICATE_PICTURE};
 use super::pages::PAGE_FILE;
 use super::pictures::PICTURES;
+use super::{CERTIFICATE_FILE, CURVE_FILE, certificate::CERTIFICATE_PICTURE};
 use crate::store::{LOG_FILE, POLICY_FILE, RUN_FILE, SUMMARY_FILE, TAG_FILE, read_stored};
 use engine::diagnostic::{Diagnostic, Result};
 
@@ -70,7 +70,8 @@ fn is_of_a_run(name: &str) -> bool {
         let step = stem.strip_prefix("step-").and_then(|rest| rest.rsplit_once('-'));
         step.is_some_and(|(_, side)| ["before", "after"].contains(&side))
     };
-    FILES.contains(&name) || picture.is_some_and(|stem| PICTURES.contains(&stem) || stem == CERTIFICATE_PICTURE || explained(stem))
+    FILES.contains(&name)
+        || picture.is_some_and(|stem| PICTURES.contains(&stem) || stem == CERTIFICATE_PICTURE || explained(stem))
 }
 
 #[cfg(test)]

@@ -6,8 +6,8 @@ use super::picture::Picture;
 use super::plan::WorldPlan;
 use super::route;
 use super::sheet::{
-    BELOW_TITLE_PX, BLUE, FRAME, LABEL_PX, LegendEntry, MARGIN_PX, QUIET, SKY, SMALL_PX, Sheet, TEXT, VERMILION, centred, fitted, legend,
-    spot, words,
+    BELOW_TITLE_PX, BLUE, FRAME, LABEL_PX, LegendEntry, MARGIN_PX, QUIET, SKY, SMALL_PX, Sheet, TEXT, VERMILION,
+    centred, fitted, legend, spot, words,
 };
 use super::trajectory::{FloorPlan, LEFT_PX};
 use engine::diagnostic::Result;
@@ -64,7 +64,13 @@ fn curve(sheet: &mut Sheet, certificate: &Certificate, top_px: f64) {
     let high = 1.05 * worst.max(failures.high).max(certificate.aim.map_or(0.0, |aim| aim.per_1000)).max(0.1);
     let (min, max) = (spot(MARGIN_PX + LEFT_PX, top_px), spot(WIDTH_PX - MARGIN_PX, top_px + PLOT_PX));
     let share = if certificate.each_its_own_world { "worlds" } else { "draws" };
-    let x = Axis { title: format!("{share}, from the best to the worst (%)"), low: 0.0, high: 100.0, room_px: BELOW_PX, ticks: 10 };
+    let x = Axis {
+        title: format!("{share}, from the best to the worst (%)"),
+        low: 0.0,
+        high: 100.0,
+        room_px: BELOW_PX,
+        ticks: 10,
+    };
     let y = Axis { title: "failures in 1,000 steps".to_owned(), low: 0.0, high, room_px: LEFT_PX, ticks: 6 };
     let plot = axes(sheet, min, max, &x, &y);
     let CertifiedRate { low, high: above, .. } = *failures;

@@ -39,7 +39,8 @@ pub(crate) fn run(arguments: &CertifyArguments, console: &mut Console) -> std::r
     let folder = out.map(|out| CertificateFolder::create(out, arguments.force)).transpose()?;
     let stop = on_ctrl_c()?;
     let Subject { plan, decider, .. } = &subject;
-    let bar = console.bar_of("testing", asked.draws.unwrap_or(DRAWS) * asked.steps.unwrap_or(plan.settings.run.test_steps));
+    let bar =
+        console.bar_of("testing", asked.draws.unwrap_or(DRAWS) * asked.steps.unwrap_or(plan.settings.run.test_steps));
     let threads = arguments.threads.unwrap_or(0) as usize;
     let certified = certify(plan, decider, &asked, threads, &stop, &|steps| bar.inc(steps));
     bar.finish_and_clear();

@@ -106,7 +106,8 @@ impl Source {
 
 /// The families of the run's own worlds: those that it learned in, else the one that its home world is named after.
 fn own_families(plan: &Plan) -> Result<Vec<String>> {
-    let family = |name: &str| name.split_once(':').and_then(|(family, _)| FAMILIES.into_iter().find(|own| *own == family));
+    let family =
+        |name: &str| name.split_once(':').and_then(|(family, _)| FAMILIES.into_iter().find(|own| *own == family));
     let names = || plan.worlds.layouts().iter().map(|layout| layout.name.as_str());
     let learned: BTreeSet<&str> = names().filter_map(family).collect();
     if !learned.is_empty() {
@@ -116,10 +117,14 @@ fn own_families(plan: &Plan) -> Result<Vec<String>> {
     if let Some(family) = FAMILIES.into_iter().find(|family| home.starts_with(family.trim_end_matches('s'))) {
         return Ok(vec![family.to_owned()]);
     }
-    let message = format!("there is no family of worlds like '{}': in which worlds is the policy to be tested?", printable(home));
+    let message =
+        format!("there is no family of worlds like '{}': in which worlds is the policy to be tested?", printable(home));
     let families = FAMILIES.join(", ");
     Diagnostic::new("E-CERTIFY", message)
-        .help(format!("add --worlds: a family ({families}), or worlds by name; --worlds {} draws anew in its own world", printable(home)))
+        .help(format!(
+            "add --worlds: a family ({families}), or worlds by name; --worlds {} draws anew in its own world",
+            printable(home)
+        ))
         .fail()
 }
 

@@ -16,8 +16,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::base_lines::test_untrained;
 use super::{Decider, Overrides, Plan, TestRun, in_parallel};
 use crate::diagnostic::{Diagnostic, Result, printable};
-pub use bounds::{count_bounds, rate_bounds, share_bounds};
 use bounds::student;
+pub use bounds::{count_bounds, rate_bounds, share_bounds};
 pub use certificate::{Aim, Certificate, CertifiedRate, CertifiedShare, HardDraw};
 use draws::{Draw, Draws};
 
