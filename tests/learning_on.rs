@@ -68,9 +68,8 @@ fn what_its_filters_kept_goes_on_with_the_policy_and_is_there_in_every_step_agai
     let bench = remembered();
     let filter = "filter(\"floor\", #{ memory: true });\ngrid(#{ occupied: 0.2 });\n";
     bench.write("floor.rhai", SCRIPT.replacen('\n', &format!("\n{filter}"), 1));
-    let darker = bench.read("worlds/small.toml");
-    let floor = darker.replace("description = \"", "description = \"Another: ");
-    bench.write("worlds/other.toml", floor);
+    let darker = bench.read("worlds/small.toml").replace("[120, 120, 120]", "[60, 60, 60]");
+    bench.write("worlds/other.toml", darker);
     run(&bench, &["floor.rhai", "--out", "f"]);
     run(&bench, &["floor.rhai", "--from", "f", "--world", "worlds/other.toml", "--out", "g"]);
     run(&bench, &["floor.rhai", "--world", "worlds/other.toml", "--out", "h"]);
