@@ -107,7 +107,7 @@ fn worlds_that_it_learned_in_are_told_and_what_cannot_be_drawn_is_one_error() {
     assert!(refused(&bench, &["a", "--worlds", "romos:3", "--out", "x"], 3).contains("there is no family of worlds"));
     assert!(refused(&bench, &["a", "--again", "--draws", "3"], 2).contains("cannot be used with"));
     assert!(
-        refused(&bench, &["a", "--set", "learner.kind=q", "--out", "x"], 3).contains("nothing is learned in a test")
+        refused(&bench, &["a", "--set", "learner.kind=q", "--out", "x"], 2).contains("nothing is learned in a test")
     );
     bench.engine(&["run", "short.rhai", "--out", "small"]);
     let message = refused(&bench, &["small"], 2);
