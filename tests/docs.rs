@@ -213,6 +213,8 @@ fn every_field_and_file_of_a_run_stands_on_the_page_about_it() {
     for folder in ["1", "1-2"] {
         keys(&serde_json::from_str(&bench.read(&format!("runs/short/{folder}/summary.json"))).unwrap(), &mut found);
     }
+    bench.engine(&["certify", "runs/short/1", "--worlds", "rooms", "--bound", "900", "--steps", "20"]);
+    keys(&serde_json::from_str(&bench.read("runs/short/1/certificate.json")).unwrap(), &mut found);
     let files = std::fs::read_dir(bench.path().join("runs/short/1")).unwrap();
     found.extend(files.map(|entry| entry.unwrap().file_name().into_string().unwrap().replace(".svg", ".png")));
     for word in found {

@@ -64,6 +64,27 @@ fn a_run_goes_on_from_another_in_another_world_and_is_verified_from_its_own_fold
 }
 
 #[test]
+fn what_its_filters_kept_goes_on_with_the_policy_and_is_there_in_every_step_again() {
+    let bench = remembered();
+    let filter = "filter(\"floor\", #{ memory: true });\ngrid(#{ occupied: 0.2 });\n";
+    bench.write("floor.rhai", SCRIPT.replacen('\n', &format!("\n{filter}"), 1));
+    let darker = bench.read("worlds/small.toml").replace("[120, 120, 120]", "[60, 60, 60]");
+    bench.write("worlds/other.toml", darker);
+    run(&bench, &["floor.rhai", "--out", "f"]);
+    run(&bench, &["floor.rhai", "--from", "f", "--world", "worlds/other.toml", "--out", "g"]);
+    run(&bench, &["floor.rhai", "--world", "worlds/other.toml", "--out", "h"]);
+    let kept = |folder: &str, step: &str| {
+        let told = bench.engine(&["explain", folder, "--step", step, "--json"]);
+        let told: Value = serde_json::from_slice(&told.stdout).unwrap();
+        told["kept"][0]["words"].as_str().unwrap().to_owned()
+    };
+    // What was driven over before is known at the first step, and not to who begins with nothing.
+    assert!(kept("g", "0") != kept("h", "0"), "{}", kept("g", "0"));
+    bench.engine(&["explain", "g", "--step", "799", "--json"]);
+    assert!(is_verified(&bench, "g"));
+}
+
+#[test]
 fn rules_of_another_form_judge_the_steps_anew_and_other_numbers_keep_all() {
     let bench = remembered();
     bench.write("nearer.rhai", format!("{MEMORY}{}", SCRIPT.replace("0.25", "0.3")));

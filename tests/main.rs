@@ -16,6 +16,8 @@ mod bad_input;
 mod bench;
 /// The page in a real browser, from a file and live; pictures of it in `target/browser`.
 mod browser;
+/// A bound in worlds that nobody has seen: the same bytes, drawn again, its worst draws.
+mod certify;
 /// Learned policies combined: files, figures, disagreements, mistakes.
 mod combine;
 /// Runs beside one another, listed, tagged and pruned; many seeds in their order.
@@ -73,6 +75,8 @@ mod photos;
 mod places;
 /// Recordings for viewers, read back by another reader.
 mod recording;
+/// Frames that another renderer drew are what this one sees.
+mod rendered;
 /// Recorded runs through the program: replayed, explained, rescored, damaged.
 mod replay;
 /// The paper's claims through the program, quickly; the map that a test leaves.

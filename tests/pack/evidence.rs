@@ -56,6 +56,46 @@ fn an_author_cannot_build_what_nobody_could_replay() {
 }
 
 #[test]
+fn a_certificate_is_built_into_a_pack_and_drawn_again_by_whoever_doubts_it() {
+    let bench = Bench::new();
+    small_folder(&bench, "short", "ada/short");
+    let author = bench.read("short/pack.toml");
+    let certify = |worlds: &str| format!("{author}\n[certify]\nworlds = [\"{worlds}\"]\ndraws = 4\nsteps = 40\n");
+    bench.write("short/pack.toml", certify("rooms"));
+    bench.ok(&["pack", "build", "short", "--out", "a.pack"]);
+    let pack = Pack::load(&bench.path().join("a.pack")).unwrap();
+    let manifest = pack.manifest();
+    let certificate = manifest.evidence.as_ref().unwrap().certificate.as_ref().unwrap();
+    assert_eq!((manifest.format, certificate.draws, certificate.failures.steps), (2, 4, 160));
+    let verified = bench.ok(&["pack", "verify", "a.pack", "--allow-unsigned", "--replay"]);
+    assert!(verified.contains("reproduced bit for bit"), "{verified}");
+    let others = bench.engine(&["certify", "a.pack", "--allow-unsigned", "--again", "--seed", "5"]);
+    let others = String::from_utf8_lossy(&others.stdout).into_owned();
+    assert!(others.contains("before:") && others.contains("the intervals of the failures"), "{others}");
+    // A stranger's certificate must not read the files of who verifies it.
+    let text = pack.text("manifest.toml").unwrap().text.to_string();
+    let files: Vec<_> = pack.files().filter(|(path, _)| *path != "manifest.toml").collect();
+    let forged = |from: &str, to: &str| {
+        assert!(text.contains(from), "{text}");
+        let lied = text.replacen(from, to, 1);
+        let mut bytes = Vec::new();
+        let all = [("manifest.toml", lied.as_bytes())].into_iter().chain(files.iter().copied());
+        pack::archive::write(all, &mut bytes).unwrap();
+        bench.write("lied.pack", bytes);
+        let output = bench.engine(&["pack", "verify", "lied.pack", "--allow-unsigned", "--replay"]);
+        String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned()
+    };
+    let lied = forged("\"rooms\"", "\"secret.toml\"");
+    assert!(lied.contains("made by rule, not in 'secret.toml'"), "{lied}");
+    let lied = forged(&format!("seed = {}\n", certificate.seed), "seed = 3\n");
+    assert!(lied.contains("of its author's choice"), "{lied}");
+    let lied = forged("learned_in = 0", "learned_in = 1");
+    assert!(lied.contains("the certificate does not come out as it is claimed"), "{lied}");
+    bench.write("short/pack.toml", certify("worlds/small.toml"));
+    assert!(bench.failure(&["pack", "build", "short"]).contains("made by rule"));
+}
+
+#[test]
 fn a_replay_finds_other_steps_and_a_policy_that_no_seed_is_said_to_learn() {
     let bench = Bench::new();
     small_folder(&bench, "short", "ada/short");

@@ -36,6 +36,8 @@ pub enum Stream {
     Families = 11,
     /// The choices of learned policies that a script uses.
     Used = 12,
+    /// The worlds and seeds of a certificate.
+    Certify = 13,
 }
 
 /// One stream of random numbers.

@@ -8,13 +8,14 @@ use semver::{Version, VersionReq};
 use serde::{Deserialize, Serialize};
 
 use super::bundle::read_limited;
+use super::certified::{CertifyLine, certificate_of};
 use super::entry_path::{EntryPath, MAX_LEVELS};
 use super::evidence::{Evidence, Proof, measure};
 use super::manifest::{self, Capabilities, Dependency, FileLine, Manifest, PackEntry, toml_error};
 use super::marks::STEPS;
 use super::{Digest, MAX_MANIFEST_BYTES, MAX_PACK_BYTES, MAX_SEEDS, Pack, PackName, Runnable, archive, malformed};
 use engine::diagnostic::{Diagnostic, Result, SourceText, nearest_name, printable};
-use engine::experiment::{Overrides, Progress};
+use engine::experiment::{Decider, Overrides, Progress};
 use engine::filter::Sources;
 use insight::report::{TrajectoryData, WorldPlan, trajectories};
 
@@ -50,6 +51,9 @@ pub struct Author {
     /// The seeds that the evidence is measured with.
     #[serde(default = "three_seeds")]
     pub seeds: Vec<u64>,
+    /// A bound in worlds that nobody has seen, which goes into the evidence; without it, none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub certify: Option<CertifyLine>,
     /// Every file that goes into the pack.
     pub files: Vec<EntryPath>,
     /// What the pack asks for.
@@ -149,7 +153,7 @@ pub fn build(
     let draft = draft(folder)?;
     let runnable = draft.plan(depends, &Overrides::default(), sources)?;
     let proofs = measure(&runnable, &author.seeds, threads, stop, report)?;
-    let evidence = Evidence::new(&runnable, &proofs)?;
+    let mut evidence = Evidence::new(&runnable, &proofs)?;
     let mut manifest = draft.manifest().clone();
     let mut files: BTreeMap<EntryPath, Vec<u8>> = manifest
         .files
@@ -161,6 +165,12 @@ pub fn build(
         files.insert(own_path(PICTURE)?, picture(&runnable, proof)?);
         if let Some(policy) = &proof.policy {
             let text = runnable.policy_text(policy)?;
+            if let Some(line) = &author.certify {
+                let decider = Decider::Learned(policy.clone());
+                let certificate = certificate_of(&runnable, &decider, text.as_bytes(), line, threads, stop)?;
+                evidence.certificate = Some(certificate);
+                manifest.format = manifest::FORMAT_OF_CERTIFICATE;
+            }
             files.insert(own_path(POLICY)?, text.into_bytes());
             manifest.entry.policy = Some(own_path(POLICY)?);
         }

@@ -4,11 +4,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::{Deserialize, Serialize};
 
+use super::certified::certificate_difference;
 use super::marks::{Marks, STEPS};
 use super::{Digest, MAX_EVIDENCE_STEPS, MAX_SEED_STEPS, MAX_SEEDS, Pack, Runnable, fingerprint, malformed};
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{
-    Plan, Progress, RunLog, SeedRun, Summary, TestRun, Trail, WINDOW_STEPS, in_parallel, run_seed,
+    Certificate, Plan, Progress, RunLog, SeedRun, Summary, TestRun, Trail, WINDOW_STEPS, in_parallel, run_seed,
 };
 use engine::learner::Policy;
 
@@ -44,6 +45,9 @@ pub struct Evidence {
     /// One claim for each seed.
     #[serde(rename = "seed")]
     pub seeds: Vec<SeedClaim>,
+    /// A bound in worlds that the policy has not seen.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Certificate>,
 }
 
 /// The figures of one seed, as in `summary.json`.
@@ -219,6 +223,7 @@ impl Evidence {
             params: runnable.plan.behaviour.params().iter().map(|param| (param.name.clone(), param.shown())).collect(),
             policy_seed: best.map(|proof| proof.claim.seed),
             seeds: proofs.iter().map(|proof| proof.claim.clone()).collect(),
+            certificate: None,
         })
     }
 
@@ -260,6 +265,7 @@ pub fn replay(
         differences.push(Difference { seed: seeds[0], step: None, what });
     }
     differences.extend(policy_difference(pack, runnable, evidence, &proofs)?);
+    differences.extend(certificate_difference(pack, runnable, stop)?);
     Ok(differences)
 }
 

@@ -7,6 +7,7 @@
 pub mod archive;
 mod author;
 mod bundle;
+mod certified;
 mod check;
 mod entry_path;
 mod evidence;
@@ -25,6 +26,7 @@ mod trust;
 
 pub use author::{Author, build, draft};
 pub use bundle::Pack;
+pub use certified::CertifyLine;
 pub use check::{PackFinding, check_pack};
 pub use engine::digest::Digest;
 pub use entry_path::EntryPath;

@@ -3,6 +3,7 @@
 use semver::{Version, VersionReq};
 use serde::{Deserialize, Serialize};
 
+use super::certified::check_worlds;
 use super::entry_path::{EntryPath, kind};
 use super::evidence::Evidence;
 use super::{Digest, MAX_MANIFEST_BYTES, MAX_SEEDS, PackName, malformed};
@@ -11,8 +12,10 @@ use engine::settings::Edition;
 
 /// The manifest's name in a pack.
 pub(super) const FILE: &str = "manifest.toml";
-/// The format that this engine writes and reads.
+/// The format that this engine writes.
 pub(super) const FORMAT: u32 = 1;
+/// That of a pack with a certificate.
+pub(super) const FORMAT_OF_CERTIFICATE: u32 = 2;
 /// The longest description and licence, bytes.
 const MAX_TEXT_BYTES: usize = 300;
 
@@ -20,7 +23,7 @@ const MAX_TEXT_BYTES: usize = 300;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Manifest {
-    /// The number of the format: 1.
+    /// The number of the format: 1, or 2 with a certificate.
     pub format: u32,
     /// Its name.
     pub name: PackName,
@@ -137,8 +140,9 @@ impl Manifest {
             return malformed("E-PACK-LIMIT", message).fail();
         }
         let ManifestFormat { format } = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
-        if format != FORMAT {
-            let message = format!("the pack has format {format}, this engine reads format {FORMAT}");
+        if ![FORMAT, FORMAT_OF_CERTIFICATE].contains(&format) {
+            let message =
+                format!("the pack has format {format}, this engine reads formats {FORMAT} and {FORMAT_OF_CERTIFICATE}");
             return malformed("E-PACK-FORMAT", message).help("use a newer engine").fail();
         }
         let manifest: Self = toml::from_str(&source.text).map_err(|error| toml_error(source, &error))?;
@@ -214,6 +218,8 @@ impl Manifest {
             return malformed("E-PACK-LIMIT", format!("the evidence has more than {MAX_SEEDS} seeds, the limit"))
                 .fail();
         }
+        let certificate = self.evidence.as_ref().and_then(|evidence| evidence.certificate.as_ref());
+        certificate.map_or(Ok(()), |certificate| check_worlds(&certificate.worlds))?;
         self.check_entry()?;
         self.check_capabilities()
     }

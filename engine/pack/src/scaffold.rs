@@ -63,6 +63,7 @@ pub fn scaffold(name: &PackName, folder: &Path, from: Option<(&Path, Sources)>) 
         edition: Some(Edition::NEWEST.number()),
         script: own(&script)?,
         world: world.as_deref().map(own).transpose()?,
+        certify: None,
         seeds: vec![1, 2, 3],
         files: files.keys().map(|path| own(path)).collect::<Result<_>>()?,
         capabilities,

@@ -1,5 +1,6 @@
 //! The command line: names, defaults and help, no logic.
 
+mod certify;
 mod changes;
 mod check;
 mod language;
@@ -14,6 +15,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+pub(crate) use certify::CertifyArguments;
 pub(crate) use changes::{Changes, SettingChanges};
 pub(crate) use check::{CheckArguments, CheckFormat};
 pub(crate) use language::{ReferenceArguments, UpgradeArguments};
@@ -40,6 +42,8 @@ pub(crate) enum Command {
     Check(CheckArguments),
     /// Test a learned policy again, in the same or another world
     Test(TestArguments),
+    /// Bound how a learned policy does in worlds that nobody has seen, which are drawn for it
+    Certify(CertifyArguments),
     /// Play a recorded run again and compare every step; with --verify, learn it again too
     Replay(ReplayArguments),
     /// Why a step was rewarded as it was, or what the code of an error means
@@ -81,6 +85,7 @@ impl Command {
             Self::Run(arguments) => arguments.json,
             Self::Check(arguments) => arguments.format() == CheckFormat::Json,
             Self::Test(arguments) => arguments.json,
+            Self::Certify(arguments) => arguments.json,
             Self::Replay(arguments) => arguments.json,
             Self::Explain(arguments) => arguments.json,
             Self::Compare(arguments) => arguments.json,
@@ -282,7 +287,8 @@ pub(crate) struct ReproduceArguments {
 pub(crate) struct FilterArguments {
     /// The behaviour: a script such as scripts/wall.rhai, a .pack file, a pack's folder, or an installed pack's name
     pub(crate) behaviour: PathBuf,
-    /// PNG or JPEG files, or folders of them; at most 64 MiB and 50 megapixels each
+    /// PNG or JPEG files, or folders of them; at most 64 MiB and 50 megapixels each. For a filter that reads depth: PNG files of
+    /// 16 bits in millimetres, 0 where nothing was measured
     #[arg(required = true)]
     pub(crate) image: Vec<PathBuf>,
     /// The view to see through, of a script that has several; the first one otherwise

@@ -86,11 +86,16 @@ impl Console {
 
     /// A progress bar on a terminal, nothing elsewhere.
     pub(crate) fn bar(&self, steps: u64) -> ProgressBar {
+        self.bar_of("learning", steps)
+    }
+
+    /// A progress bar of something else than learning.
+    pub(crate) fn bar_of(&self, what: &str, steps: u64) -> ProgressBar {
         if !std::io::stderr().is_terminal() {
             return ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::hidden());
         }
         let bar = ProgressBar::new(steps);
-        let style = ProgressStyle::with_template("learning {wide_bar} {pos}/{len} steps {msg:30}");
+        let style = ProgressStyle::with_template(&format!("{what} {{wide_bar}} {{pos}}/{{len}} steps {{msg:30}}"));
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         bar.enable_steady_tick(Duration::from_millis(100));
         bar

@@ -32,6 +32,7 @@ fn run(command: &Command, console: &mut Console) -> Result<u8, ConsoleError> {
         Command::Run(arguments) => commands::run::run(arguments, console),
         Command::Check(arguments) => commands::check::run(arguments, console),
         Command::Test(arguments) => commands::test::run(arguments, console),
+        Command::Certify(arguments) => commands::certify::run(arguments, console),
         Command::Replay(arguments) => commands::replay::run(arguments, console),
         Command::Explain(arguments) => commands::explain::run(arguments, console),
         Command::Compare(arguments) => commands::compare::run(arguments, console),

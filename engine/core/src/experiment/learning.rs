@@ -135,6 +135,7 @@ pub(super) fn learn_through(
 ) -> Result<Learning> {
     let others: Vec<&Plan> = plan.rescored().chain(after).collect();
     let mut learning = Learning::watched(plan.first_leg(), seed, &others)?;
+    ledger.set_out_from(&learning.set_out_from);
     learning.run(plan.first_steps(), stop, report, ledger)?;
     for (from, carry, leg, steps) in plan.swaps() {
         if learning.steps() < from {
@@ -161,6 +162,8 @@ pub struct Learning<R = SimulatedRobot, L = ShippedLearner> {
     hash: StateHash,
     joined: Joined,
     fault: Option<Box<Diagnostic>>,
+    /// What the filters kept before the first step.
+    set_out_from: Vec<u8>,
 }
 
 impl Learning {
@@ -175,9 +178,14 @@ impl Learning {
 
     /// A learning robot beside which the rules of other plans judge along.
     fn watched(plan: &Plan, seed: u64, others: &[&Plan]) -> Result<Self> {
-        let cycle = Cycle::watched(plan, Phase::Learning.robot(plan, seed)?, others, &[])?;
-        let learner = plan.first_learner(cycle.state_map(), seed)?;
-        Ok(Self::with(plan, seed, cycle, learner))
+        let origin = plan.origin_of(seed).map(|origin| origin.again(plan)).transpose()?;
+        let kept = origin.as_ref().map_or_else(Vec::new, |origin| origin.kept.clone());
+        let cycle = Cycle::watched(plan, Phase::Learning.robot(plan, seed)?, others, &kept)?;
+        let learner = match origin {
+            Some(origin) => origin.learner(plan, cycle.state_map(), seed)?,
+            None => plan.first_learner(cycle.state_map(), seed)?,
+        };
+        Ok(Self { set_out_from: kept, ..Self::with(plan, seed, cycle, learner) })
     }
 
     /// What learned, and what the rules say that judged along to the end.
@@ -202,6 +210,7 @@ impl<R: Robot, L: Learner> Learning<R, L> {
             used: UsedDrivers::new(plan, seed),
             cycle,
             fault: None,
+            set_out_from: Vec::new(),
         }
     }
 

@@ -6,6 +6,7 @@ mod base_lines;
 mod by_world;
 mod carrying;
 mod certainty;
+mod certify;
 mod changes;
 mod checkpoints;
 mod choosers;
@@ -55,6 +56,10 @@ pub use base_lines::{base_lines, test_untrained};
 pub use by_world::WorldFigures;
 pub use carrying::rejudge;
 pub use certainty::CertaintyGrid;
+pub use certify::{
+    Aim, Asked, Certificate, CertifiedRate, CertifiedShare, DRAWS, HardDraw, MOST_DRAWS, certify, count_bounds,
+    rate_bounds, share_bounds,
+};
 pub use checkpoints::{Checkpoints, Kept, can_be_kept};
 pub use choosers::{ByState, Frozen, Learns};
 use choosers::{Recorded, Together};

@@ -9,7 +9,7 @@ use std::sync::atomic::AtomicBool;
 use super::learning::learn_through;
 use super::{Ledger, Plan};
 use crate::diagnostic::{Diagnostic, Result, SourceText, grouped, printable};
-use crate::learner::{Carry, Learner, ShippedLearner, shipped_learner};
+use crate::learner::{Carry, Learner, Rejudged, ShippedLearner, shipped_learner};
 use crate::settings::{LearnerKind, Settings};
 use crate::state::StateMap;
 
@@ -99,8 +99,11 @@ impl Origin {
         Ok(())
     }
 
-    /// The learner of a plan that goes on from it.
-    fn learner(&self, next: &Plan, map: &dyn StateMap, seed: u64) -> Result<ShippedLearner> {
+    /// Learns it again, to where a plan can go on from it.
+    ///
+    /// # Errors
+    /// `E-FROM` if it does not come out as it was recorded; if something fails.
+    pub(super) fn again(&self, next: &Plan) -> Result<Reached> {
         let (never, mut off) = (AtomicBool::new(false), Ledger::off());
         let last = (self.carry == Carry::Rescore).then_some(next);
         let mut again = learn_through(&self.plan, self.seed, last, &never, &|_| (), &mut off)?;
@@ -114,10 +117,28 @@ impl Origin {
             let help = "this engine, or a filter, is not the one that recorded it: run it again";
             return Diagnostic::new("E-FROM", message).help(help).fail();
         }
-        let (mut learner, said) = again.into_learner();
+        let (learner, said) = again.into_learner();
+        Ok(Reached { learner, said, kept: learned.policy.kept().to_vec(), carry: self.carry })
+    }
+}
+
+/// Where an origin ends, and a plan goes on.
+pub(super) struct Reached {
+    learner: ShippedLearner,
+    /// What the rules of the plan say of its latest steps, if these are judged anew.
+    said: Vec<Rejudged>,
+    /// What its filters kept; empty if they keep nothing.
+    pub(super) kept: Vec<u8>,
+    carry: Carry,
+}
+
+impl Reached {
+    /// The learner of the plan that goes on.
+    pub(super) fn learner(self, next: &Plan, map: &dyn StateMap, seed: u64) -> Result<ShippedLearner> {
+        let Self { mut learner, said, carry, .. } = self;
         let task = next.task(map, seed)?;
-        learner.swap(&next.settings.learner, task.mirror.clone(), self.carry);
-        if self.carry == Carry::Rescore {
+        learner.swap(&next.settings.learner, task.mirror.clone(), carry);
+        if carry == Carry::Rescore {
             learner.rescore(&said);
         }
         Ok(learner.with_random(task.random))
@@ -152,9 +173,19 @@ impl Plan {
     /// The learner that a seed begins with, over the states of a map.
     pub(super) fn first_learner(&self, map: &dyn StateMap, seed: u64) -> Result<ShippedLearner> {
         match self.origin_of(seed) {
-            Some(origin) => origin.learner(self, map, seed),
+            Some(origin) => origin.again(self)?.learner(self, map, seed),
             None => Ok(shipped_learner(&self.settings.learner, self.task(map, seed)?)),
         }
+    }
+
+    /// What the filters kept that a seed goes on from; empty if it goes on from nothing, or they keep nothing. The origin is
+    /// learned again for it.
+    ///
+    /// # Errors
+    /// As going on from it.
+    pub fn kept_before(&self, seed: u64) -> Result<Vec<u8>> {
+        let Some(origin) = self.origin_of(seed) else { return Ok(Vec::new()) };
+        if self.first_leg().eyes()?.keep() { Ok(origin.again(self)?.kept) } else { Ok(Vec::new()) }
     }
 }
 

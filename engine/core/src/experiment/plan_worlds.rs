@@ -147,7 +147,7 @@ impl Plan {
                 let colours = layout.scene.parts().materials.iter().map(|material| material.name.as_str());
                 let movers = layout.movers.iter().map(|mover| mover.name.as_str());
                 let (kind, name, known): (_, _, Vec<&str>) = match VariedKey::of(&varied.key)?.0 {
-                    VariedKey::Colour(name) => ("material", name, colours.collect()),
+                    VariedKey::Colour(name) | VariedKey::Texture(name) => ("material", name, colours.collect()),
                     VariedKey::Mover(name) => ("mover", name, movers.collect()),
                     _ => return None,
                 };

@@ -207,8 +207,33 @@ impl Robot for SimulatedRobot {
 mod tests {
     use super::*;
     use crate::diagnostic::SourceText;
-    use crate::settings::{CameraSettings, RecoverTo};
+    use crate::settings::{CameraSettings, DrawnFrom, RecoverTo, Value, Varied};
     use filter_api::Format;
+
+    #[test]
+    fn a_texture_is_drawn_anew_for_each_attempt_and_is_seen() {
+        let text = "[[material]]\nname = \"grey\"\ncolour = [120, 120, 120]\n[floor]\nmaterial = \"grey\"\n\
+                    [[wall]]\npoints_m = [[-9, 3], [9, 3]]\n[[start]]\nposition_m = [0, 0]\n";
+        let kinds = ["plain", "checker", "tiles"].map(|kind| Value::Text(kind.to_owned()));
+        let varied = Varied { key: "texture.grey".to_owned(), from: DrawnFrom::OneOf(kinds.to_vec()) };
+        let mut settings = Settings { randomise: vec![varied], ..Settings::default() };
+        settings.recovery.to = RecoverTo::Start;
+        settings.camera.noise = 0.0;
+        let layout = Layout::parse(SourceText::new("w.toml", text), &settings.robot.body).unwrap();
+        let mut robot = SimulatedRobot::new(&Arc::new(layout), &settings, 1).unwrap();
+        let mut observation = Observation::asking_for(Format::Grey, 160, 120, 181);
+        let mut met = [false; 3];
+        for _ in 0..20 {
+            let kind = robot.drawn()[0] as usize;
+            robot.observe(&mut observation).unwrap();
+            let below = &observation.image.pixels[160 * 100..];
+            let same = below.iter().all(|grey| *grey == below[0]);
+            assert_eq!(same, kind == 0, "{kind}");
+            met[kind] = true;
+            robot.recover().unwrap();
+        }
+        assert_eq!(met, [true; 3]);
+    }
 
     #[test]
     fn a_camera_sees_the_body_below_it_only_where_it_is_told_to() {

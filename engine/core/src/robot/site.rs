@@ -95,9 +95,10 @@ impl Site {
         }
         if touched.colours {
             let scene = &self.world.layout().scene;
-            let materials = scene.parts().materials.iter().enumerate();
-            let lighter = materials.filter_map(|(index, material)| Some((index, touched.levels_of(&material.name)?)));
-            self.scene = Arc::new(scene.lightened(lighter));
+            let materials = scene.parts().materials.iter();
+            let changes =
+                materials.map(|material| (touched.levels_of(&material.name), touched.texture_of(&material.name)));
+            self.scene = Arc::new(scene.repainted(changes));
             self.ground = None;
         }
         if touched.camera || touched.colours {

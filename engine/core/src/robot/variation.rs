@@ -2,7 +2,7 @@
 
 use crate::random::{Random, Stream};
 use crate::saved::{Passed, Passing};
-use crate::settings::{RecoverTo, Settings, Value, Varied, VariedKey, apply};
+use crate::settings::{RecoverTo, Settings, TEXTURES, Value, Varied, VariedKey, apply};
 use crate::world::Mover;
 
 /// Draws the values of `randomise`, in the order of its keys.
@@ -30,6 +30,8 @@ pub(super) struct Touched {
     pub(super) start_yaw_deg: f64,
     /// By material: grey levels to add.
     levels: Vec<(String, f64)>,
+    /// By material: the kind of its texture.
+    textures: Vec<(String, &'static str)>,
     /// By mover: how many times as fast it is.
     speeds: Vec<(String, f64)>,
 }
@@ -73,6 +75,10 @@ impl Variation {
                 Some((VariedKey::StartShift, _)) => touched.start_shift_m = *drawn,
                 Some((VariedKey::Colour(name), _)) => set(&mut touched.levels, name, *drawn),
                 Some((VariedKey::Mover(name), _)) => set(&mut touched.speeds, name, *drawn),
+                Some((VariedKey::Texture(name), _)) => {
+                    let own = touched.textures.iter_mut().filter(|(own, _)| own == name);
+                    own.for_each(|(_, kind)| *kind = texture(varied, *drawn));
+                }
                 None => {}
             }
         }
@@ -103,6 +109,10 @@ impl Touched {
                 self.colours = true;
                 self.levels.push((name.to_owned(), 0.0));
             }
+            VariedKey::Texture(name) => {
+                self.colours = true;
+                self.textures.push((name.to_owned(), TEXTURES[0]));
+            }
             VariedKey::Mover(name) => {
                 self.movers = true;
                 self.speeds.push((name.to_owned(), 1.0));
@@ -114,9 +124,20 @@ impl Touched {
         of(&self.speeds, mover).unwrap_or(1.0)
     }
 
+    /// The kind of a material's texture, if that is drawn.
+    pub(super) fn texture_of(&self, material: &str) -> Option<&'static str> {
+        self.textures.iter().find(|(own, _)| own == material).map(|(_, kind)| *kind)
+    }
+
     pub(super) fn levels_of(&self, material: &str) -> Option<f64> {
         of(&self.levels, material)
     }
+}
+
+/// The kind that was drawn; the script was refused if it is none.
+fn texture(varied: &Varied, drawn: f64) -> &'static str {
+    let Value::Text(word) = varied.value(drawn) else { return TEXTURES[0] };
+    TEXTURES.into_iter().find(|kind| *kind == word).unwrap_or(TEXTURES[0])
 }
 
 fn of(pairs: &[(String, f64)], name: &str) -> Option<f64> {

@@ -9,6 +9,8 @@ pub mod observation;
 
 mod camera;
 mod canvas;
+#[cfg(feature = "photographs")]
+mod depth_photograph;
 mod drawing;
 mod ground;
 mod laser;
@@ -34,6 +36,8 @@ mod watch;
 mod tests;
 
 pub use camera::Camera;
+#[cfg(feature = "photographs")]
+pub use depth_photograph::load_depth;
 pub use ground::{GroundColours, GroundSensors};
 pub use laser::Laser;
 #[cfg(feature = "photographs")]

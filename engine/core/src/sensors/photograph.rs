@@ -84,9 +84,13 @@ fn missing(path: &Path) -> Diagnostic {
 /// `E-IMAGE-FILE` if it cannot be read, is damaged or ends too early; `E-IMAGE-FORMAT` if it is neither PNG nor JPEG;
 /// `E-IMAGE-LIMIT` above 64 MiB or 50 megapixels, before anything is decoded.
 pub fn load_photograph(path: &Path, width_px: usize, height_px: usize) -> Result<Image> {
+    Ok(scaled(&decoded(path)?.into_rgb8(), width_px, height_px))
+}
+
+/// The pixels of a file, turned upright.
+pub(super) fn decoded(path: &Path) -> Result<DynamicImage> {
     let bytes = read(path)?;
-    let pixels = decode(path, &bytes)?;
-    Ok(scaled(&pixels, width_px, height_px))
+    decode(path, &bytes)
 }
 
 fn read(path: &Path) -> Result<Vec<u8>> {
@@ -107,7 +111,7 @@ fn read(path: &Path) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn decode(path: &Path, bytes: &[u8]) -> Result<RgbImage> {
+fn decode(path: &Path, bytes: &[u8]) -> Result<DynamicImage> {
     let mut reader =
         ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| unreadable(path, &error))?;
     let format = match reader.format() {
@@ -134,7 +138,7 @@ fn decode(path: &Path, bytes: &[u8]) -> Result<RgbImage> {
     let orientation = decoder.orientation().map_err(failed)?;
     let mut image = DynamicImage::from_decoder(decoder).map_err(failed)?;
     image.apply_orientation(orientation);
-    Ok(image.into_rgb8())
+    Ok(image)
 }
 
 /// Whether a JPEG file has its end marker; a thumbnail inside it has one too, so segments are walked.
@@ -159,21 +163,26 @@ fn jpeg_ends(bytes: &[u8]) -> bool {
 }
 
 fn scaled(photograph: &RgbImage, width_px: usize, height_px: usize) -> Image {
-    let (width, height) = (u64::from(photograph.width()), u64::from(photograph.height()));
-    let (wanted_width, wanted_height) = (width_px as u64, height_px as u64);
+    let [left, top, across, down] = shape([photograph.width(), photograph.height()], [width_px, height_px]);
+    let cut = crop_imm(photograph, left, top, across, down);
+    let pixels = resize(&*cut, width_px as u32, height_px as u32, FilterType::Triangle).into_raw();
+    Image { width_px, height_px, format: Format::Rgb, pixels }
+}
+
+/// The middle of an image that has the shape of a wanted size: left, top, width, height.
+pub(super) fn shape([width, height]: [u32; 2], wanted: [usize; 2]) -> [u32; 4] {
+    let ([width, height], [wanted_width, wanted_height]) =
+        ([width, height].map(u64::from), wanted.map(|size| size as u64));
     let wide = width * wanted_height > height * wanted_width;
     let (across, down) = if wide {
         ((height * wanted_width / wanted_height).max(1), height)
     } else {
         (width, (width * wanted_height / wanted_width).max(1))
     };
-    let (left, top) = ((width - across) / 2, (height - down) / 2);
-    let cut = crop_imm(photograph, left as u32, top as u32, across as u32, down as u32);
-    let pixels = resize(&*cut, width_px as u32, height_px as u32, FilterType::Triangle).into_raw();
-    Image { width_px, height_px, format: Format::Rgb, pixels }
+    [(width - across) / 2, (height - down) / 2, across, down].map(|size| size as u32)
 }
 
-fn shown(path: &Path) -> String {
+pub(super) fn shown(path: &Path) -> String {
     printable(&path.display().to_string())
 }
 

@@ -24,7 +24,7 @@ pub use edition::Edition;
 pub use fan::ScanFan;
 pub(crate) use shipped_bodies::{SHIPPED_BODIES, shipped_body};
 pub use table::{SETTINGS, Setting, SettingError, SettingShape, Value, apply};
-pub use variation::{DrawnFrom, Varied, VariedKey, WorldShare};
+pub use variation::{DrawnFrom, TEXTURES, Varied, VariedKey, WorldShare};
 pub use views::{CONDITION, FilterSettings, GridSettings, PartSettings, UNNAMED_VIEW, ViewSettings};
 pub use words::{CombineWay, LearnerKind, Lens, RecoverTo};
 

@@ -33,12 +33,15 @@ const VARIABLE: [&str; 26] = [
     "recovery.yaw_deg",
 ];
 /// What else may be drawn, with its unit, its range, and what stands for a name of the world in it.
-const OF_THE_WORLD: [(&str, SettingShape); 4] = [
+const OF_THE_WORLD: [(&str, SettingShape); 5] = [
     ("start.yaw_deg", SettingShape::Number(-180.0, 180.0)),
     ("start.shift_m", SettingShape::Number(-5.0, 5.0)),
     ("colour.NAME", SettingShape::Number(-255.0, 255.0)),
     ("mover.NAME.speed", SettingShape::Number(0.0, 10.0)),
+    ("texture.NAME", SettingShape::Choice(&TEXTURES)),
 ];
+/// The kinds of a world file's textures, which have its defaults here.
+pub const TEXTURES: [&str; 6] = ["plain", "checker", "stripes", "noise", "tiles", "bricks"];
 
 /// One entry of `worlds`.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -80,13 +83,15 @@ pub enum VariedKey<'a> {
     Colour(&'a str),
     /// How many times as fast as its file says one mover is.
     Mover(&'a str),
+    /// The kind of a material's texture.
+    Texture(&'a str),
 }
 
 impl<'a> VariedKey<'a> {
     /// What a key is about, and what its values may be; nothing if it cannot vary.
     #[must_use]
     pub fn of(key: &'a str) -> Option<(Self, SettingShape)> {
-        let [yaw, shift, colour, speed] = OF_THE_WORLD.map(|(_, shape)| shape);
+        let [yaw, shift, colour, speed, texture] = OF_THE_WORLD.map(|(_, shape)| shape);
         if VARIABLE.contains(&key) {
             let row = SETTINGS.iter().find(|row| row.name() == key)?;
             return Some((Self::Setting(row), row.shape));
@@ -98,8 +103,9 @@ impl<'a> VariedKey<'a> {
             _ => key
                 .strip_prefix("colour.")
                 .map(|name| (Self::Colour(name), colour))
+                .or_else(|| Some((Self::Texture(key.strip_prefix("texture.")?), texture)))
                 .or_else(|| Some((mover()?, speed)))
-                .filter(|(key, _)| !matches!(key, Self::Colour("") | Self::Mover(""))),
+                .filter(|(key, _)| !matches!(key, Self::Colour("") | Self::Mover("") | Self::Texture(""))),
         }
     }
 

@@ -93,6 +93,29 @@ pub enum Texture {
     Bricks(Tiling),
 }
 
+impl Texture {
+    /// A texture of a kind of world files; plain if there is no such kind. Those without joints have amplitude and scale of `tiling`.
+    #[must_use]
+    pub(crate) fn of_kind(kind: &str, tiling: Tiling) -> Self {
+        let Tiling { amplitude, scale_m, .. } = tiling;
+        match kind {
+            "checker" => Self::Checker { amplitude, scale_m },
+            "stripes" => Self::Stripes { amplitude, scale_m },
+            "noise" => Self::Noise { amplitude, scale_m },
+            "tiles" => Self::Tiles(tiling),
+            "bricks" => Self::Bricks(tiling),
+            _ => Self::Plain,
+        }
+    }
+}
+
+impl Default for Tiling {
+    /// What a world file means that does not say it.
+    fn default() -> Self {
+        Self { amplitude: 10.0, scale_m: 0.2, joint_m: 0.012, joint: 40.0 }
+    }
+}
+
 /// Tiles or bricks, and the joints between them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tiling {
@@ -178,14 +201,17 @@ impl Scene {
         self.driven
     }
 
-    /// This scene with some of its materials so many grey levels lighter; negative ones are darker.
+    /// This scene with each of its materials so many grey levels lighter, negative ones darker, and of another kind of texture.
     #[must_use]
-    pub(crate) fn lightened(&self, materials: impl Iterator<Item = (usize, f64)>) -> Self {
+    pub(crate) fn repainted(&self, changes: impl Iterator<Item = (Option<f64>, Option<&'static str>)>) -> Self {
         let mut scene = self.clone();
-        for (index, levels) in materials {
-            if let Some(material) = scene.parts.materials.get_mut(index) {
+        for (material, (levels, texture)) in scene.parts.materials.iter_mut().zip(changes) {
+            if let Some(levels) = levels {
                 material.colour =
                     material.colour.map(|level| (f64::from(level) + levels).round().clamp(0.0, 255.0) as u8);
+            }
+            if let Some(kind) = texture {
+                material.texture = Texture::of_kind(kind, Tiling::default());
             }
         }
         scene

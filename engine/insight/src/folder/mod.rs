@@ -1,5 +1,6 @@
 //! A run's folder, written: what `store` reads again, the pictures of `report` and the page of `page`.
 
+mod certificate;
 mod drawn;
 mod files;
 mod pages;
@@ -21,6 +22,7 @@ use files::{write_log, write_policy, write_run, write_seed};
 use removal::retire;
 use taken::{Claim, taken, unfinished};
 
+pub use certificate::{CERTIFICATE_FILE, CertificateFolder, certificate_lines, read_certificate};
 pub use drawn::Redrawn;
 pub use files::{CURVE_FILE, DISAGREEMENTS_FILE, create_folder, curve_of, disagreements_of, write_json};
 pub use removal::remove_run;

@@ -38,6 +38,7 @@ pub(super) fn write_page(
             // The page of one seed of many stands in the seed's own folder.
             let own = if results.len() == 1 { logs.to_owned() } else { logs.join(seed.to_string()) };
             let mut log = read_back(&own, plan, seed)?;
+            log.learning.set_out_from(&plan.kept_before(seed)?);
             log.test.set_out_from(results[index].run.learned.as_ref().map_or(&[], |learned| learned.policy.kept()));
             read.push((index, log));
         }

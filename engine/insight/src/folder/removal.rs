@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use super::pages::PAGE_FILE;
 use super::pictures::PICTURES;
 use super::test_folder::TEST_FILE;
-use super::{CURVE_FILE, DISAGREEMENTS_FILE};
+use super::{CERTIFICATE_FILE, CURVE_FILE, DISAGREEMENTS_FILE, certificate::CERTIFICATE_PICTURE};
 use crate::disk::{Lock, RESUMABLE, is_there, is_unfinished};
 use crate::store::{CHECKPOINT_FILE, LOG_FILE, POLICY_FILE, RUN_FILE, STEPS_FILE, SUMMARY_FILE, TAG_FILE, read_stored};
 use engine::diagnostic::{Diagnostic, Result, SourceText, printable};
 
 /// Files of a run under names of their own.
-const FILES: [&str; 11] = [
+const FILES: [&str; 12] = [
     RUN_FILE,
     SUMMARY_FILE,
     POLICY_FILE,
@@ -23,6 +23,7 @@ const FILES: [&str; 11] = [
     CHECKPOINT_FILE,
     STEPS_FILE,
     DISAGREEMENTS_FILE,
+    CERTIFICATE_FILE,
 ];
 /// What `engine rescore` writes into a folder of its own within the run's.
 const RESCORE: &str = "rescore-";
@@ -144,7 +145,8 @@ fn is_of_a_run(name: &str) -> bool {
         let step = step.and_then(|rest| rest.rsplit_once('-'));
         step.is_some_and(|(step, side)| step.parse::<u64>().is_ok() && ["before", "after"].contains(&side))
     };
-    FILES.contains(&name) || picture.is_some_and(|stem| PICTURES.contains(&stem) || explained(stem))
+    FILES.contains(&name)
+        || picture.is_some_and(|stem| PICTURES.contains(&stem) || stem == CERTIFICATE_PICTURE || explained(stem))
 }
 
 #[cfg(test)]
@@ -166,6 +168,7 @@ mod tests {
         let run = place.path().join("1-2");
         write(&run, &["run.toml", "summary.json", "paths.svg", "tag.txt", "1/run.toml", "1/log.bin", "2/run.toml"]);
         write(&run, &["step-7-before.png", "test-step-7-after.svg", "rescore-mine/rescore.json"]);
+        write(&run, &["certificate.json", "certificate.svg"]);
         assert_eq!(remove_run(&run).unwrap(), Vec::<PathBuf>::new());
         assert!(!run.exists());
     }

@@ -39,6 +39,11 @@ pub(super) struct Plot {
 }
 
 impl Plot {
+    /// A plot without axes: where the ranges of both are on the sheet.
+    pub(super) fn of(min: Spot, max: Spot, x: (f64, f64), y: (f64, f64)) -> Self {
+        Self { min, max, x, y }
+    }
+
     /// The place of a value; values far outside stay near enough to the plot to be counted.
     pub(super) fn at(&self, x: f64, y: f64) -> Spot {
         (place(x, self.x, (self.min.0, self.max.0)), place(y, self.y, (self.max.1, self.min.1)))

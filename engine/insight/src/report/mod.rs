@@ -5,6 +5,7 @@
 mod axes;
 mod canvas;
 mod certainty;
+mod certified;
 mod csv;
 mod curve;
 mod curves;
@@ -25,6 +26,8 @@ mod vector;
 mod worlds;
 
 pub use certainty::certainty_grid;
+pub(crate) use certified::MOST_PANELS;
+pub use certified::{CertifiedData, certified};
 pub use csv::{CurveRow, curve_csv};
 pub use curve::{CurveData, learning_curve};
 pub use curves::{CurveGroup, CurveStyle, compared_curves, has_bands};

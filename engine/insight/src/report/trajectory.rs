@@ -105,6 +105,11 @@ impl FloorPlan {
         (height_px / shape, height_px)
     }
 
+    /// The plot without axes.
+    pub(super) fn bare(&self, min: Spot, max: Spot) -> Plot {
+        Plot::of(min, max, self.x, self.y)
+    }
+
     /// Draws the axes and the empty floor.
     pub(super) fn plot(&self, sheet: &mut Sheet, min: Spot, max: Spot, floor: Tint) -> Plot {
         sheet.rect(min, max, floor);

@@ -8,7 +8,7 @@ use engine::experiment::{Decider, Overrides, SeenView, Sight};
 use engine::filter::{Catalogue, Chain};
 use engine::learner::Policy;
 use engine::sensors::observation::Image;
-use engine::sensors::{load_photograph, photograph_files};
+use engine::sensors::{load_depth, load_photograph, photograph_files};
 use engine::settings::Settings;
 use engine::state::Grid;
 use insight::disk::write_atomic;
@@ -75,7 +75,6 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
     create_folder(&out)?;
     keep_photographs(&files, &out)?;
     let (mut chain, mut grid) = (plan.chain()?, plan.grid()?);
-    check_no_depth(&plan, &chain)?;
     // Photographs are no drive: each is seen by filters that know what they knew when learning ended, or nothing.
     let kept = met.as_ref().map(|policy| policy.kept().to_vec()).filter(|kept| !kept.is_empty());
     let kept = kept.map_or_else(|| chain.save(), Ok)?;
@@ -83,7 +82,8 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
     let mut all = Vec::with_capacity(files.len());
     for file in &files {
         let camera = &plan.settings.camera;
-        let image = load_photograph(file, camera.width_px as usize, camera.height_px as usize)?;
+        let load = if chain.reads_depth() { load_depth } else { load_photograph };
+        let image = load(file, camera.width_px as usize, camera.height_px as usize)?;
         chain.load(&kept)?;
         let state = grid.encode(chain.apply(&image).map_err(|error| failed(file, &error.message))?);
         let name = unused(file, &names);
@@ -116,18 +116,6 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
     let alike = told_apart(&all, &grid, met.as_ref(), console)?;
     let new = met.is_some() && told_new(&all, arguments.new_share, console)?;
     Ok(u8::from(alike || new))
-}
-
-/// A photograph has colours and no depth.
-fn check_no_depth(plan: &Sight, chain: &Chain) -> Result<()> {
-    if !chain.reads_depth() {
-        return Ok(());
-    }
-    let filter = plan.settings.view.filters.first().map_or("", |filter| &filter.name);
-    let message = format!("filter '{}' reads depth, and a photograph has none", printable(filter));
-    Diagnostic::new("E-FILTER-SETTING", message)
-        .help("give a script or a view whose filters look at colours; what a depth filter does shows engine explain RUN --step N")
-        .fail()
 }
 
 /// Through one of several views, if one is named; what training met is known of states of one view alone.

@@ -3,6 +3,7 @@
 mod behaviour;
 pub(crate) mod bench;
 mod branch;
+pub(crate) mod certify;
 pub(crate) mod check;
 pub(crate) mod compare;
 pub(crate) mod explain;

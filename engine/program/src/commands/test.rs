@@ -83,7 +83,7 @@ pub(crate) fn run(arguments: &TestArguments, console: &mut Console) -> Result<u8
 }
 
 /// Refuses changes under which the states of what was learned mean something else.
-fn check_states(learned: &Settings, now: &Settings) -> engine::diagnostic::Result<()> {
+pub(super) fn check_states(learned: &Settings, now: &Settings) -> engine::diagnostic::Result<()> {
     let differs = if !learned.views().eq(now.views()) {
         "other filters or another grid"
     } else if (&learned.state, &learned.stages) != (&now.state, &now.stages) {
@@ -97,7 +97,7 @@ fn check_states(learned: &Settings, now: &Settings) -> engine::diagnostic::Resul
 }
 
 /// Refuses settings that a test has no use for.
-fn check_effect(set: &[String], kind: LearnerKind) -> engine::diagnostic::Result<()> {
+pub(super) fn check_effect(set: &[String], kind: LearnerKind) -> engine::diagnostic::Result<()> {
     // What remembers its steps has a temperature of its own.
     let chooses = |key: &str| kind != LearnerKind::Memory && FROZEN.contains(&key);
     let learns = |key: &str| key == "run.steps" || key.starts_with("learner.") && !chooses(key);
@@ -108,7 +108,7 @@ fn check_effect(set: &[String], kind: LearnerKind) -> engine::diagnostic::Result
 }
 
 /// What a pack carries: its policy, under the seed that learned it, or the policies that it combines.
-fn of_pack(
+pub(super) fn of_pack(
     pack: &Pack,
     depends: &[Pack],
     overrides: &Overrides,

@@ -25,6 +25,13 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          Codes stand in brackets at the beginning of a message: error[E-SCRIPT-FACT]. Copy it from there.",
     ),
     (
+        "E-CERTIFY",
+        Kind::Usage,
+        "engine certify does not know in which worlds to test the policy, or was asked for something that it cannot state.\n\
+         Worlds that are made by rule are of a family: rooms, corridors, lines. A policy is tested in the family of the worlds \
+         that it learned in, or that its world is named after; else --worlds says which, or names worlds.",
+    ),
+    (
         "E-COMBINES",
         Kind::Usage,
         "The command was given a script that combines learned policies, and what it was asked to do needs a \

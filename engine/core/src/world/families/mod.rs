@@ -62,6 +62,23 @@ impl FamilyRange {
         Self::of(name).and_then(Result::ok).map_or(1, |range| range.count())
     }
 
+    /// Numbers of worlds in a whole family: 0 and on.
+    pub const NUMBERS: u32 = MOST_NUMBER as u32 + 1;
+
+    /// As it is written: `corridors:1-12`.
+    #[must_use]
+    pub fn name(&self) -> String {
+        let (first, last) = (self.numbers.start(), self.numbers.end());
+        let last = if first == last { String::new() } else { format!("-{last}") };
+        format!("{}:{first}{last}", FAMILIES[self.family])
+    }
+
+    /// The name of one of its worlds, counted from 0.
+    #[must_use]
+    pub fn nth(&self, index: u32) -> String {
+        format!("{}:{}", FAMILIES[self.family], self.numbers.start() + u64::from(index))
+    }
+
     /// How many worlds they are.
     #[must_use]
     pub fn count(&self) -> usize {

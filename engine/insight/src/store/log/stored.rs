@@ -38,6 +38,7 @@ impl RecordedRun {
             error.message = format!("'{}': {}", path.display(), error.message);
             error
         })?;
+        log.learning.set_out_from(&stored.plan.kept_before(stored.seed)?);
         if let Decider::Learned(policy) = &stored.decider {
             log.test.set_out_from(policy.kept());
         }

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use engine::diagnostic::{Result, printable};
+use insight::folder::certificate_lines;
 use pack::{Evidence, Manifest, PACK_ENDING, Pack, Signature, fingerprint, key_id};
 use serde_json::{Value, json};
 
@@ -88,6 +89,11 @@ pub(super) fn print_evidence(console: &mut Console, manifest: &Manifest) -> std:
         console.line(&format!(
             "  seed {seed}: {success}{learned}; test: {failures:.1} failures in 1000 steps{untrained}, contacts: {contacts}{laps}"
         ))?;
+    }
+    if let Some(certificate) = manifest.evidence.as_ref().and_then(|evidence| evidence.certificate.as_ref()) {
+        for line in certificate_lines(certificate) {
+            console.line(&format!("  unseen worlds: {line}"))?;
+        }
     }
     Ok(())
 }
