@@ -120,3 +120,38 @@ fn only_what_is_met_has_rows_where_no_table_could_hold_all_states() {
     assert!(error.message.contains("make more than 524288 states"), "{}", error.message);
     assert!(error.help.unwrap().contains("learner(#{ kind: \"memory\" })"));
 }
+
+/// The wall's script with rewards of another size, learned for 2,000 steps: the failures of each window, and every value.
+fn learned_at_size(size: f64, seed: u64) -> (Vec<u64>, Vec<f64>) {
+    let script = std::fs::read_to_string(root().join("scripts/wall.rhai")).unwrap();
+    let sized = script.replace("=> -1 then", &format!("=> {:?} then", -size));
+    assert_eq!(sized.matches(&format!("=> {:?} then", -size)).count(), 3);
+    let mut plan = plan(&sized);
+    plan.settings.run.steps = 2_000;
+    let learned = learn(&plan, seed, &AtomicBool::new(false), &|_| ()).unwrap();
+    let values = learned.policy.rows().flat_map(|(_, row)| row.values.clone()).collect();
+    (learned.tally.windows.iter().map(|window| window.endings.failures).collect(), values)
+}
+
+#[test]
+fn rewards_times_128_or_a_64th_teach_the_same_to_the_bit() {
+    for size in [128.0, 1.0 / 64.0] {
+        let ((failures, values), (sized_failures, sized_values)) = (learned_at_size(1.0, 7), learned_at_size(size, 7));
+        assert_eq!(failures, sized_failures, "rewards times {size}");
+        assert!(values.iter().zip(&sized_values).all(|(value, sized)| value * size == *sized), "values times {size}");
+    }
+}
+
+#[test]
+fn rewards_times_100_or_a_50th_cost_the_same_punishments_within_one() {
+    let mean = |size: f64| {
+        let seeds = 1..=6;
+        let punished: u64 = seeds.map(|seed| learned_at_size(size, seed).0.iter().sum::<u64>()).sum();
+        punished as f64 / 6.0
+    };
+    let usual = mean(1.0);
+    for size in [100.0, 0.02] {
+        let sized = mean(size);
+        assert!((sized - usual).abs() <= 1.0, "{sized} punishments with rewards times {size}, {usual} as they are");
+    }
+}

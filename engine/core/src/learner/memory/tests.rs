@@ -229,7 +229,7 @@ fn a_reward_of_another_size_teaches_the_same() {
         (0..600).map(choose).collect::<Vec<_>>()
     };
     // Powers of two, so that not even rounding differs.
-    assert_eq!(chosen(1.0), chosen(64.0));
+    assert_eq!(chosen(1.0), chosen(128.0));
     assert_eq!(chosen(1.0), chosen(0.015_625));
 }
 
