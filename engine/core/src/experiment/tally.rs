@@ -56,9 +56,9 @@ impl Tally {
     pub(super) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
         by.list(&mut self.windows, |by, window| {
             let Window { steps, reinforcement, endings, contacts, stages, rounds, guarded } = window;
-            let Endings { failures, goals, restarts } = endings;
+            let Endings { failures, goals, restarts, hops } = endings;
             by.number(reinforcement)?;
-            let counts = [steps, failures, goals, restarts, contacts, stages, rounds, guarded];
+            let counts = [steps, failures, goals, restarts, hops, contacts, stages, rounds, guarded];
             counts.into_iter().try_for_each(|count| by.whole(count))
         })?;
         by.all(&mut self.fired, Passing::whole)?;

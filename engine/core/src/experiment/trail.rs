@@ -96,7 +96,8 @@ impl Recorder {
             by.single(x)?;
             by.single(y)
         };
-        let Trail { legs, failures, last, goals, movers } = &mut self.trail;
+        // Only a test, which is never kept, follows the robot into other worlds.
+        let Trail { legs, failures, last, goals, movers, further: _ } = &mut self.trail;
         by.list(legs, |by, leg| by.list(leg, point))?;
         by.list(failures, point)?;
         by.list(goals, point)?;
