@@ -64,6 +64,7 @@ pub(super) fn retire(old: &Path, now: &Path) -> Result<()> {
     } else {
         // Folders named by numbers may be runs of their own here.
         kept = entries(old)?;
+        kept.retain(|path| !(path.is_file() && is_unfinished(&name_of(path))));
     }
     if !stays && !kept.is_empty() {
         return Ok(());
