@@ -14,8 +14,6 @@ pub(super) fn check_filters(plan: &Plan, findings: &mut Vec<Finding>) {
             let Some(span) = plan.behaviour.place_of(&view.place(&format!("filter:{index}"))) else { continue };
             match filter.name.as_str() {
                 "chroma" => alike(plan, "colour", span, of_one_colour(filter), findings),
-                // Edges of what another filter leaves are its own matter.
-                "sobel" if index == 0 => alike(plan, "grey", span, of_no_edge(filter), findings),
                 "relief" => too_low(plan, span, filter, findings),
                 "floor" if value(filter, "memory", 0.0) != 0.0 => {
                     alike(plan, "grey", span, of_one_grey(filter), findings);
@@ -83,17 +81,6 @@ fn of_one_grey(filter: &FilterSettings) -> impl Fn([f64; 3], [f64; 3]) -> Option
     move |face, floor| {
         let [face, floor] = [face, floor].map(grey);
         ((face - floor).abs() <= levels).then(|| format!("{face} is within {levels} of {floor}"))
-    }
-}
-
-/// What `sobel` says of two colours: the greys, if a straight edge between them is none to it. Its kernels weigh such a step by 4.
-fn of_no_edge(filter: &FilterSettings) -> impl Fn([f64; 3], [f64; 3]) -> Option<String> {
-    let threshold = value(filter, "threshold", 60.0);
-    move |face, floor| {
-        let [face, floor] = [face, floor].map(grey);
-        let step = 4.0 * (face - floor).abs();
-        (step < threshold)
-            .then(|| format!("{face} beside {floor} is an edge of {step}, below the threshold of {threshold}"))
     }
 }
 
