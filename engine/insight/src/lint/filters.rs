@@ -14,9 +14,6 @@ pub(super) fn check_filters(plan: &Plan, findings: &mut Vec<Finding>) {
             let Some(span) = plan.behaviour.place_of(&view.place(&format!("filter:{index}"))) else { continue };
             match filter.name.as_str() {
                 "chroma" => alike(plan, "colour", span, of_one_colour(filter), findings),
-                // Edges of what another filter leaves are its own matter.
-                "sobel" if index == 0 => alike(plan, "grey", span, of_no_edge(filter), findings),
-                "relief" => too_low(plan, span, filter, findings),
                 "floor" if value(filter, "memory", 0.0) != 0.0 => {
                     alike(plan, "grey", span, of_one_grey(filter), findings);
                 }
@@ -81,45 +78,10 @@ fn alike(
 fn of_one_grey(filter: &FilterSettings) -> impl Fn([f64; 3], [f64; 3]) -> Option<String> {
     let levels = value(filter, "levels", 6.0);
     move |face, floor| {
-        let [face, floor] = [face, floor].map(grey);
+        let [face, floor] =
+            [face, floor].map(|[red, green, blue]| ((77.0 * red + 150.0 * green + 29.0 * blue) / 256.0).floor());
         ((face - floor).abs() <= levels).then(|| format!("{face} is within {levels} of {floor}"))
     }
-}
-
-/// What `sobel` says of two colours: the greys, if a straight edge between them is none to it. Its kernels weigh such a step by 4.
-fn of_no_edge(filter: &FilterSettings) -> impl Fn([f64; 3], [f64; 3]) -> Option<String> {
-    let threshold = value(filter, "threshold", 60.0);
-    move |face, floor| {
-        let [face, floor] = [face, floor].map(grey);
-        let step = 4.0 * (face - floor).abs();
-        (step < threshold)
-            .then(|| format!("{face} beside {floor} is an edge of {step}, below the threshold of {threshold}"))
-    }
-}
-
-/// Something to run into that is too low for `relief`: its top is within the tolerance of the ground.
-fn too_low(plan: &Plan, span: Range<usize>, filter: &FilterSettings, findings: &mut Vec<Finding>) {
-    let (parts, tolerance) = (plan.layout.scene.parts(), value(filter, "tolerance", 0.06));
-    // A top at this height is nearer than the ground behind it by just that share.
-    let least_m = plan.settings.camera.height_m * tolerance / (1.0 + tolerance);
-    let driven_on = plan.layout.driven_on(&plan.settings.robot.body);
-    let stands = parts.solids.iter().zip(driven_on).filter(|(solid, driven_on)| solid.collides && !driven_on);
-    let top_m = |solid: &Solid| solid.bounds().1.z;
-    let low = stands.map(|(solid, _)| solid).find(|solid| (0.0..least_m).contains(&top_m(solid)) && top_m(solid) > 0.0);
-    if let Some(solid) = low {
-        let (name, top_m) = (&parts.materials[solid.material].name, top_m(solid));
-        let message = format!(
-            "something of '{name}' is {top_m:.3} m high: with this camera and a tolerance of {tolerance}, what is below \
-             {least_m:.3} m is ground to the filter"
-        );
-        let help = "mount the camera lower, or lower the tolerance as far as the camera's noise allows";
-        findings.push(Finding::warning(plan, "W-LOOK-ALIKE", span, message).say("cannot see it", help));
-    }
-}
-
-/// The grey that filters see of a colour.
-fn grey([red, green, blue]: [f64; 3]) -> f64 {
-    ((77.0 * red + 150.0 * green + 29.0 * blue) / 256.0).floor()
 }
 
 /// What `chroma` says of two colours: how far they are apart, if within its tolerance.

@@ -39,8 +39,8 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
         "W-LOOK-ALIKE",
         Kind::Input,
         "Something that the robot must see looks like the floor to the filter.\n\
-         Told of `floor` with a memory where a face has a grey of the floor in the world's light, of `sobel` where the two are too \
-         near for an edge, of `chroma` where it has the floor's colour, and of `relief` where a thing is too low for its tolerance. Another light or colour helps, or a depth camera with `relief`.",
+         Told of `floor` with a memory where a face has a grey of the floor in the world's light, and of `chroma` where it has its \
+         colour. Another light or colour helps, or a depth camera with `relief`.",
     ),
     (
         "W-LOOP",
