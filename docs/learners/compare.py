@@ -91,9 +91,9 @@ def one(script, steps, seed, sees, kind):
 def main():
     script, steps, first, count = sys.argv[1], *map(int, sys.argv[2:5])
     torch.set_num_threads(1)
-    for kind in ("DQN", "PPO"):
-        for sees in ("states", "cells"):
-            for seed in range(first, first + count):
+    for seed in range(first, first + count):
+        for kind in ("DQN", "PPO"):
+            for sees in ("states", "cells"):
                 print(json.dumps(one(script, steps, seed, sees, kind)), flush=True)
 
 

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::shot::Shot;
 use super::track::{Moments, ScanShape, Track, TrackSource};
 use engine::diagnostic::Result;
-use engine::experiment::{Ledger, Phase, Plan, Tally};
+use engine::experiment::{Ledger, Phase, Plan, Tally, ValueReasons};
 use engine::learner::Policy;
 use engine::verdict::{BaseLines, ConditionVerdict, SuccessVerdict, TestFigures};
 
@@ -13,6 +13,8 @@ use crate::verdict_words::{figures, headline};
 
 /// The most states of a seed in a document.
 const MOST_STATES: usize = 256;
+/// Of the steps behind a state's value so many are named.
+const MOST_TRIES: usize = 8;
 
 /// What is known about a seed.
 #[derive(Debug, Clone, Copy)]
@@ -123,6 +125,9 @@ pub struct StateRow {
     pub value: f64,
     /// The value of each action; empty for a seed without steps.
     pub values: Vec<f64>,
+    /// Why the best action has its value at the end of learning; absent where that is not known, as of a table.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why: Option<ValueReasons>,
 }
 
 impl SeedView {
@@ -171,6 +176,10 @@ impl SeedView {
         if !data.learning.is_empty() {
             let (track, made) = source(Phase::Learning, data.learning).track(moments, &mut recall)?;
             self.learning = Some(track);
+            for row in &mut self.states {
+                let why = recall.as_ref().and_then(|recall| recall.of([row.state, row.best]));
+                row.why = why.map(|why| why.brief(MOST_TRIES));
+            }
             shots.extend(made);
         }
         if !data.tested.is_empty() {
@@ -207,7 +216,7 @@ fn states(plan: &Plan, policy: &Policy, with_values: bool) -> Result<Vec<StateRo
         let text = if plan.settings.has_parts() { described.text } else { String::new() };
         let cells = filled.iter().map(|filled| if *filled { '1' } else { '0' }).collect();
         let values = if with_values { row.values.iter().copied().map(rounded).collect() } else { Vec::new() };
-        Some(StateRow { state, cells, text, visits, best, value: rounded(value), values })
+        Some(StateRow { state, cells, text, visits, best, value: rounded(value), values, why: None })
     });
     Ok(rows.collect())
 }

@@ -4,14 +4,14 @@ const SPEEDS = [1, 2, 5, 10, 25, 50, 100, 250, 1000];
 
 const app = {
   doc: null, before: null, save: 0, seed: 0, phase: 'test', step: 0, share: 1, speed: 3, playing: false,
-  litRule: null, live: null, shot: null, tracks: new Map(), picked: false, world: null,
+  litRule: null, live: null, shot: null, tracks: new Map(), picked: false, world: null, explained: null,
 };
 const stale = { base: true, moment: true, motion: true, lit: true };
 const map = new WorldMap($('map'));
 const curve = new Curve($('curve'), $('curve-note'), pickWindow);
 const timeline = new Timeline($('timeline'), (step) => { pause(); go(step); });
 const frames = new Frames($('frames'), $('frames-note'));
-const states = new States($('states'), $('states-note'), nextWithState);
+const states = new States($('states'), $('states-note'), pickState);
 const seeds = new Seeds($('seeds'), $('seeds-note'), pickSeed);
 const script = new Script($('script'), light);
 
@@ -130,6 +130,7 @@ function setPhase(phase) {
   );
   app.shot = null;
   seeds.now(app.seed);
+  if (app.explained !== seed) $('state-why').replaceChildren();
   states.draw(app.doc, seed, app.before?.seeds.find((old) => old.seed === seed.seed) ?? null);
   Object.assign(stale, { base: true, moment: true, motion: true });
 }
@@ -175,6 +176,15 @@ function pickWindow(window_) {
     if (index >= 0 && steps.reward[index] < least) { least = steps.reward[index]; worst = step; }
   }
   go(worst);
+}
+
+/** Goes to the next step that ends in a state, and tells why its best action is worth what it is. */
+function pickState(row) {
+  const title = `state ${row.state}: why ${motion(app.doc.actions[row.best])} is worth, after the last step of learning,`;
+  const jump = (step) => { pause(); setPhase('learning'); go(step); };
+  app.explained = seedView();
+  $('state-why').replaceChildren(...(row.why ? [valueChain(row.why, jump, title)] : []));
+  nextWithState(row.state);
 }
 
 function nextWithState(state) {

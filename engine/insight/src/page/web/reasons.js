@@ -45,8 +45,8 @@ function addedBy(doc, track, index, rule) {
   return left;
 }
 
-/** Why the action was worth what it was: what spoke, from what stands behind all else to its own tries, and these steps. */
-function valueChain({ value, unit, links, own_tries: count, tries }, jump) {
+/** Why an action is worth what it is: what spoke, from what stands behind all else to its own tries, and these steps. */
+function valueChain({ value, unit, links, own_tries: count, tries }, jump, title = 'why this action was worth') {
   const rows = links.map((link) => el('tr', {}, el('td', { text: link.name }), el('td', { text: link.tries.toFixed(1) }),
     el('td', { text: link.mean === null ? '' : short(link.mean) }), el('td', { text: short(link.value) })));
   const head = el('tr', { class: 'quiet' }, ...['', 'tries', 'mean', 'so far'].map((text) => el('th', { text })));
@@ -55,7 +55,7 @@ function valueChain({ value, unit, links, own_tries: count, tries }, jump) {
     return earlier || !jump ? el('span', { text: words }) : el('button', { type: 'button', class: 'link', text: words, onclick: () => jump(step) });
   });
   const more = count > tries.length ? ` and ${whole(count - tries.length)} more` : '';
-  return el('div', {}, el('div', {}, el('b', { text: `why this action was worth ${short(value)}` }), ` (a spread of ${short(unit)} is usual)`),
+  return el('div', {}, el('div', {}, el('b', { text: `${title} ${short(value)}` }), ` (a spread of ${short(unit)} is usual)`),
     el('table', {}, el('tbody', {}, head, ...rows)),
     ...(own.length ? [el('div', { class: 'fact' }, 'its own tries, as steps of learning (and what followed): ',
       ...own.flatMap((one, at) => (at ? [', ', one] : [one])), more)] : []));

@@ -55,7 +55,7 @@ class States {
         + (differs ? `\nbefore the save: ${motion(doc.actions[last.best])}` : '');
       const button = el('button', {
         type: 'button', title, class: `state${differs ? ' changed' : ''}${row.visits < FEW_VISITS ? ' rare' : ''}`,
-        onclick: () => this.onPick(row.state),
+        onclick: () => this.onPick(row),
       }, stateIcon(doc, row, last),
       el('span', { class: 'number', text: `no. ${row.state}` }),
       // What else the state holds.
