@@ -234,7 +234,7 @@ fn a_branch_goes_on_from_a_step_under_other_rules_and_names_the_first_that_diffe
     bench.write("other.rhai", crate::support::SCRIPT.replace("<= 0.25 => -1", "<= 0.6 => -1"));
     let text = |script, from: &str, out| {
         let output = bench.engine(&["run", script, "--branch", from, "--out", out]);
-        String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr).into_owned()
+        format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
     };
     let other = text("other.rhai", "it@300", "branched");
     let step = other.split("the first step that differs from the recorded one is ").nth(1).unwrap();
