@@ -77,8 +77,8 @@ fn another_renderer_sees_the_same_worlds_from_the_same_poses() {
             "{name}: {:.2} % of pixels, edges {ours:.4} and {theirs:.4}, states {state} and {other_state}",
             100.0 * share
         );
-        assert!(share >= 0.985, "{name}: {share}");
-        assert!(ours >= 0.98 && theirs >= 0.98, "{name}: {ours} {theirs}");
+        assert!(share >= 0.99, "{name}: {share}");
+        assert!(ours >= 0.92 && theirs >= 0.92, "{name}: {ours} {theirs}");
         assert_eq!(state, other_state, "{name}");
     }
 }

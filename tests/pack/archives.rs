@@ -213,7 +213,7 @@ fn manifests() -> Vec<Case> {
         ("a name with an escape", change("eve/small", "eve/\\u001b[2J"), "E-PACK-MANIFEST"),
         ("a version that is none", change("1.0.0", "1.0"), "E-PACK-MANIFEST"),
         ("a version with an escape", change("1.0.0", "1.0.0\\u001b"), "E-PACK-MANIFEST"),
-        ("a newer format", change("format = 1", "format = 2"), "E-PACK-FORMAT"),
+        ("a newer format", change("format = 1", "format = 3"), "E-PACK-FORMAT"),
         ("a misspelt key", change("license", "licence"), "E-PACK-MANIFEST"),
         ("an unknown capability", format!("{HEAD}\n[capabilities]\nnetwork = true\n"), "E-PACK-MANIFEST"),
         (

@@ -55,6 +55,7 @@ impl Checkpoints<'_> {
                 return unfit("it does not fit the run that it stands beside").fail();
             }
         }
+        ledger.set_out_from(&learning.set_out_from);
         let (all, every) = (plan.settings.run.steps, if self.every == 0 { u64::MAX } else { self.every });
         while learning.steps() < all && learning.fault().is_none() {
             let next = every - learning.steps() % every;

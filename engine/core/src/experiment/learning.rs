@@ -163,7 +163,7 @@ pub struct Learning<R = SimulatedRobot, L = ShippedLearner> {
     joined: Joined,
     fault: Option<Box<Diagnostic>>,
     /// What the filters kept before the first step.
-    set_out_from: Vec<u8>,
+    pub(super) set_out_from: Vec<u8>,
 }
 
 impl Learning {

@@ -169,4 +169,12 @@ mod tests {
         assert!(view.set_grid("rows", &Value::Number(99.0)).is_err());
         assert_eq!(view.place("grid.rows"), "red.grid.rows");
     }
+
+    #[test]
+    fn a_part_is_blind_that_reads_nothing_but_the_time_and_its_own_doing() {
+        let is_blind = |of: &str| PartSettings::Bins { of: of.to_owned(), edges: vec![1.0] }.is_blind();
+        assert!(is_blind("time.attempt_s") && is_blind("action.angular + time.step"));
+        assert!(!is_blind("laser.front") && !is_blind("min(laser.left, time.step)"));
+        assert!(!PartSettings::View("red".to_owned()).is_blind());
+    }
 }

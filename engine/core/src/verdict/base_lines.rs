@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::figures::TestFigures;
+use super::measured::TestFigures;
 
 /// The tests that stand beside one test, over the same steps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

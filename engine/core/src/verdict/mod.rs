@@ -1,8 +1,9 @@
 //! Whether what was learned is a success, and by which figures: nothing of it comes from the reward alone.
 //!
 //! ```text
-//!   figures.rs (what a test measures) --> term.rs (a condition over figures) --> success.rs (the conditions of a script, or
-//!   window.rs  (windows of learning)  ----------------------------------------->   the default) --> judged.rs (the verdict)
+//!   measured.rs (what a test measures) --> figures.rs (its figures by name) --> term.rs (a condition over figures) -->
+//!   window.rs (windows of learning) -->
+//!     success.rs (the conditions of a script, or the default) --> judged.rs (the verdict)
 //! ```
 
 mod asked;
@@ -10,6 +11,7 @@ mod base_lines;
 mod default;
 mod figures;
 mod judged;
+mod measured;
 mod success;
 mod term;
 mod totals;
@@ -17,8 +19,9 @@ mod window;
 
 pub use asked::{AskedFigure, Probe, Request};
 pub use base_lines::{BaseLines, BlindFigures};
-pub use figures::{FIGURES, TestFigure, TestFigures};
+pub use figures::{FIGURES, TestFigure};
 pub use judged::{Because, ConditionVerdict, FigureVerdict, SuccessVerdict};
+pub use measured::TestFigures;
 pub use success::{Success, SuccessCondition};
 pub use term::Subject;
 pub use totals::{MeasureTotal, RuleTotal, StageTotal};

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use super::asked::Request;
-use super::figures::{Source, TestFigure, TestFigures};
+use super::figures::{Source, TestFigure};
+use super::measured::TestFigures;
 use super::window::WindowCounts;
 use crate::judge::expression::{Arithmetic, Comparison};
 

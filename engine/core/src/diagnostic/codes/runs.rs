@@ -12,6 +12,13 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          Write for example: engine run mine.rhai --branch runs/wall/1@200.",
     ),
     (
+        "E-CERTIFY",
+        Kind::Usage,
+        "engine certify does not know in which worlds to test the policy, or was asked for something that it cannot state.\n\
+         Worlds that are made by rule are of a family: rooms, corridors, lines. A policy is tested in the family of the worlds \
+         that it learned in, or that its world is named after; else --worlds says which, or names worlds.",
+    ),
+    (
         "E-CHECKPOINT",
         Kind::State,
         "A run cannot be gone on with: there is no checkpoint in its place, it is damaged, of another engine or of another run.\n\
@@ -23,13 +30,6 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
         Kind::Usage,
         "The word that was to be explained looks like a code, but no message of this engine has it.\n\
          Codes stand in brackets at the beginning of a message: error[E-SCRIPT-FACT]. Copy it from there.",
-    ),
-    (
-        "E-CERTIFY",
-        Kind::Usage,
-        "engine certify does not know in which worlds to test the policy, or was asked for something that it cannot state.\n\
-         Worlds that are made by rule are of a family: rooms, corridors, lines. A policy is tested in the family of the worlds \
-         that it learned in, or that its world is named after; else --worlds says which, or names worlds.",
     ),
     (
         "E-COMBINES",
