@@ -40,12 +40,9 @@ pub(super) fn syntax(source: &SourceText, error: &ParseError, own_names: &[Strin
         }
         ParseErrorType::UnexpectedEOF => at("the script ends too early".to_owned(), "something is missing here")
             .help("look for a bracket that is never closed"),
-        ParseErrorType::MissingToken(token, _) if token == ";" && is_decimal_comma(source, *position) => {
-            at("a number has a point, not a comma".to_owned(), "a comma").help("write 0.25, not 0,25")
-        }
         ParseErrorType::MissingToken(token, _) if token == ";" => {
-            at("a ';' is missing before this".to_owned(), "a new statement begins here")
-                .help("end every statement with ';'")
+            let (message, label, help) = end_missing(is_decimal_comma(source, *position));
+            at(message.to_owned(), label).help(help)
         }
         ParseErrorType::MissingToken(token, _) => {
             at(format!("'{}' is missing here", printable(token)), "expected before this")
@@ -131,6 +128,14 @@ pub(super) fn unknown_function_at(source: &SourceText, at: usize, name: &str, ow
             let names: Vec<_> = FUNCTIONS.iter().map(|row| row.name).collect();
             diagnostic.help(format!("there are: {}", names.join(", ")))
         }
+    }
+}
+
+/// What is said where a statement should end: message, mark and the way out.
+fn end_missing(decimal_comma: bool) -> (&'static str, &'static str, &'static str) {
+    match decimal_comma {
+        true => ("a number has a point, not a comma", "a comma", "write 0.25, not 0,25"),
+        false => ("a ';' is missing before this", "a new statement begins here", "end every statement with ';'"),
     }
 }
 

@@ -144,7 +144,7 @@ mod tests {
         close(share_bounds(8, 10), [0.4439, 0.9748]);
         close(share_bounds(1, 20), [0.0013, 0.2487]);
         close(share_bounds(81, 263), [0.2527, 0.3676]);
-        close(share_bounds(1000, 1000), [0.025_f64.powf(1e-3), 1.0]);
+        close(share_bounds(1000, 1000), [libm::pow(0.025, 1e-3), 1.0]);
         assert_eq!(share_bounds(0, 0), [0.0, 1.0]);
     }
 
