@@ -89,7 +89,7 @@ facts! {
     LaserAt: laser "at", Metres, Laser, Given, Call("laser.at(degrees)", 1), "The range of the beam nearest to this bearing, the right one of two; positive to the left.";
     LaserBetween: laser "between", NoUnit, Any, NoBeam, Call("laser.between(from, to)", 2), "The beams from one bearing to another, degrees, positive to the left: as `sector`.";
     LaserHit: laser "hit", NoUnit, Any, Given, Call("laser.hit(beam)", 1), "Whether that beam met anything nearer than the greatest range.";
-    LaserHitAt: laser "hit_at", NoUnit, Any, Given, Call("laser.hit_at(degrees)", 1), "The same of the beam nearest to this bearing.";
+    LaserHitAt: laser "hit_at", NoUnit, Any, Given, Call("laser.hit_at(degrees)", 1), "Whether the beam nearest to this bearing met anything nearer than the greatest range.";
     LaserMinRange: laser "min_range_m", Metres, Any, NoBeam, Number(|f| f.laser_range_m.0), "The least range that the laser can tell.";
     LaserMaxRange: laser "max_range_m", Metres, Any, NoBeam, Number(|f| f.laser_range_m.1), "The greatest range: what a beam reads that meets nothing.";
     SectorNearest: sector "nearest", Metres, Laser, Nearest, Sector(|r| decimal(least(r))), "The least range in the sector.";
@@ -102,11 +102,11 @@ facts! {
     CameraCoverage: camera "coverage", Share, Between(0.0, 1.0), NoBeam, ViewNumber(|v| v.coverage), "The share of the image that the filter left.";
     CameraCell: camera "cell", Share, Between(0.0, 1.0), NoBeam, Call("camera.cell(row, column)", 2), "The share of one grid cell that the filter left; row 0 is the top, column 0 the left.";
     CameraRows: camera "rows", Share, Between(0.0, 1.0), NoBeam, Call("camera.rows(from, to)", 2), "The share that the filter left of these rows of the grid, both included.";
-    CameraColumns: camera "columns", Share, Between(0.0, 1.0), NoBeam, Call("camera.columns(from, to)", 2), "The same of these columns.";
+    CameraColumns: camera "columns", Share, Between(0.0, 1.0), NoBeam, Call("camera.columns(from, to)", 2), "The share that the filter left of these columns of the grid, both included.";
     CameraIndex: camera "index", Unit::State, Any, NoBeam, ViewWhole(|v| v.index as i64), "The number of this view's grid alone, from 0.";
     CameraSize: camera "size", Share, Between(0.0, 1.0), NoBeam, ViewNumber(|v| v.patch.size), "The largest patch that the filter left: its share of the image.";
     CameraBearing: camera "bearing_deg", Degrees, Seen(-180.0, 180.0, 180.0), NoBeam, ViewNumber(|v| v.patch.bearing_deg), "Where its centre lies, from straight ahead, positive to the left.";
-    CameraElevation: camera "elevation_deg", Degrees, Seen(-90.0, 90.0, 90.0), NoBeam, ViewNumber(|v| v.patch.elevation_deg), "The same, above the horizon.";
+    CameraElevation: camera "elevation_deg", Degrees, Seen(-90.0, 90.0, 90.0), NoBeam, ViewNumber(|v| v.patch.elevation_deg), "Where the centre of that patch lies above the horizon.";
     CameraOffset: camera "offset", HalfImages, Seen(-1.0, 1.0, 2.0), NoBeam, ViewNumber(|v| v.patch.offset), "Where its centre lies across the image: 1 at the left edge, 0 in the middle.";
     CameraLeft: camera "left_deg", Degrees, Seen(-180.0, 180.0, 180.0), NoBeam, ViewNumber(|v| v.patch.left_deg), "The bearing of its left edge, at the height of its centre.";
     CameraRight: camera "right_deg", Degrees, Seen(-180.0, 180.0, 180.0), NoBeam, ViewNumber(|v| v.patch.right_deg), "The bearing of its right edge.";
@@ -131,8 +131,8 @@ facts! {
     OdometryAway: odometry "away_m", Metres, Steps, NoBeam, Number(|f| f.odometry.away_m()), "Straight distance to where the attempt began, by dead reckoning.";
     OdometryBearing: odometry "bearing_deg", Degrees, Between(-180.0, 180.0), NoBeam, Number(|f| f.odometry.bearing_deg()), "The bearing of that place, positive to the left.";
     GroundBrightness: ground "brightness", GreyLevels, Between(0.0, 255.0), NoBeam, Number(|f| brightness(f.ground[0])), "How bright the ground is under the middle; 0 off the ground.";
-    GroundLeft: ground "left", GreyLevels, Between(0.0, 255.0), NoBeam, Number(|f| brightness(f.ground[1])), "The same `ground.aside_m` to the left.";
-    GroundRight: ground "right", GreyLevels, Between(0.0, 255.0), NoBeam, Number(|f| brightness(f.ground[2])), "The same to the right.";
+    GroundLeft: ground "left", GreyLevels, Between(0.0, 255.0), NoBeam, Number(|f| brightness(f.ground[1])), "How bright the ground is `ground.aside_m` to the left of the middle.";
+    GroundRight: ground "right", GreyLevels, Between(0.0, 255.0), NoBeam, Number(|f| brightness(f.ground[2])), "How bright the ground is as far to the right of the middle.";
     GroundHue: ground "hue_deg", Degrees, Between(0.0, 360.0), NoBeam, Number(|f| hue_deg(f.ground[0])), "Its hue under the middle: red 0, green 120; 0 of grey. Filter `colour` counts it in steps of 0.234 degrees from the nearest of red, green and blue, and drops what is less.";
     GroundSaturation: ground "saturation", Share, Between(0.0, 1.0), NoBeam, Number(|f| saturation(f.ground[0])), "Its saturation under the middle, as filter `colour` counts it.";
     StageIndex: stage "index", NoUnit, Between(0.0, 15.0), NoBeam, Whole(|f| f.stage.index as i64), "The number of the stage, from 0, in the order of `stages`.";

@@ -226,7 +226,7 @@ pub const FIGURES: &[TestFigure] = &[
         |test| test.net_route_m,
         "Signed progress along the route, on it and between interventions.",
     ),
-    route("laps", "laps", |test| test.laps, "The same progress in lengths of the route."),
+    route("laps", "laps", |test| test.laps, "Signed progress along the route in lengths of it."),
     route("off_route", "share", |test| test.off_route, "Steps that end farther from the route than its half width."),
     route("route_offset_m", "metres", |test| test.route_offset_m, "Mean distance from the route."),
     test(
@@ -239,7 +239,7 @@ pub const FIGURES: &[TestFigure] = &[
         "metres_per_intervention",
         "metres",
         |test| test.metres_per_intervention,
-        "The same over failures + restarts + 1: what the robot does by itself.",
+        "Such progress over failures + restarts + 1: what the robot does by itself.",
     ),
     spells("spinning", |test| test.spinning, "Spells of 20 s with a full turn on a radius below 0.3 m."),
     spells("standing", |test| test.standing, "Spells of 20 s with less than 0.2 m of path."),
