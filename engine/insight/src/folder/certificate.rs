@@ -19,7 +19,11 @@ pub const CERTIFICATE_FILE: &str = "certificate.json";
 pub(super) const CERTIFICATE_PICTURE: &str = "certificate";
 
 /// The folder for a certificate.
-pub struct CertificateFolder<'a>(&'a Path, #[allow(dead_code, reason = "held, not read")] Lock);
+pub struct CertificateFolder<'a> {
+    path: &'a Path,
+    /// Held as long as somebody may write there.
+    _lock: Lock,
+}
 
 impl<'a> CertificateFolder<'a> {
     /// A folder that holds no other certificate, unless that is to be replaced.
@@ -35,7 +39,7 @@ impl<'a> CertificateFolder<'a> {
                 .fail();
         }
         super::create_folder(path)?;
-        Ok(Self(path, Lock::take(path)?))
+        Ok(Self { path, _lock: Lock::take(path)? })
     }
 
     /// Writes the statement, and draws it with the worst draws, which are tested again for it.
@@ -61,9 +65,9 @@ impl<'a> CertificateFolder<'a> {
         let title = format!("{}: in {} that it has not seen", certificate.behaviour, drawn_from(certificate));
         let lines = certificate_lines(certificate);
         let picture = certified(&CertifiedData { title: &title, lines: &lines, certificate, worst: &panels })?;
-        picture.write(self.0, CERTIFICATE_PICTURE)?;
-        add_to_page(self.0, &lines, &picture)?;
-        write_json(&self.0.join(CERTIFICATE_FILE), certificate)
+        picture.write(self.path, CERTIFICATE_PICTURE)?;
+        add_to_page(self.path, &lines, &picture)?;
+        write_json(&self.path.join(CERTIFICATE_FILE), certificate)
     }
 }
 

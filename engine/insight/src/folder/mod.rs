@@ -2,6 +2,7 @@
 
 mod certificate;
 mod drawn;
+mod explained;
 mod files;
 mod pages;
 mod pictures;
@@ -24,6 +25,7 @@ use taken::{Claim, taken, unfinished};
 
 pub use certificate::{CERTIFICATE_FILE, CertificateFolder, certificate_lines, read_certificate};
 pub use drawn::Redrawn;
+pub use explained::{ExplainedStep, Side};
 pub use files::{CURVE_FILE, DISAGREEMENTS_FILE, create_folder, curve_of, disagreements_of, write_json};
 pub use removal::remove_run;
 pub use test_folder::TestFolder;

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::explained::ExplainedStep;
 use super::pages::PAGE_FILE;
 use super::pictures::PICTURES;
 use super::test_folder::TEST_FILE;
@@ -141,13 +142,9 @@ fn is_of_a_seed(path: &Path, name: &str) -> bool {
 /// Whether a file of this name is one that the engine writes into a run's folder: its own, pictures, steps that were explained.
 fn is_of_a_run(name: &str) -> bool {
     let picture = name.strip_suffix(".svg").or_else(|| name.strip_suffix(".png"));
-    let explained = |stem: &str| {
-        let step = stem.strip_prefix("test-").unwrap_or(stem).strip_prefix("step-");
-        let step = step.and_then(|rest| rest.rsplit_once('-'));
-        step.is_some_and(|(step, side)| step.parse::<u64>().is_ok() && ["before", "after"].contains(&side))
-    };
     FILES.contains(&name)
-        || picture.is_some_and(|stem| PICTURES.contains(&stem) || stem == CERTIFICATE_PICTURE || explained(stem))
+        || picture.is_some_and(|stem| PICTURES.contains(&stem) || stem == CERTIFICATE_PICTURE)
+        || ExplainedStep::of_file(name).is_some()
 }
 
 #[cfg(test)]

@@ -7,12 +7,12 @@ use engine::diagnostic::{Diagnostic, Result, all_codes, code_page, excerpt, near
 use engine::experiment::{
     FactReasons, GuardReasons, Phase, Plan, Playback, RuleReasons, RunLog, StepReasons, UseReasons,
 };
-use insight::folder::create_folder;
+use insight::folder::{ExplainedStep, Side, create_folder};
 use insight::store::{RecordedRun, StoredRun};
 use insight::words::short;
 use serde::Serialize;
 
-use super::explained_step::{ExplainedStep, Side};
+use super::explained_step::draw_step;
 use super::sources::catalogue;
 use super::value_chain::value_chain;
 use super::words::{fact, icon, motion};
@@ -67,7 +67,7 @@ pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::r
     let mut playback = recalling(plan, *seed, phase, &recorded.log)?;
     playback.seek(step)?;
     let shown = ExplainedStep { phase, step };
-    let before = shown.draw(&playback, Side::Before)?;
+    let before = draw_step(shown, &playback, Side::Before)?;
     let Some(reasons) = StepReasons::of_next(&mut playback)? else {
         let message = format!("the log has {} steps of {name}, no step {step}", ledger.len());
         let error = Diagnostic::new("E-LOG-STEP", message).help("steps are counted from 0");
@@ -79,7 +79,7 @@ pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::r
         return Err(Box::new(error.help("find where it begins to differ: engine replay RUN --verify")).into());
     }
     before.write(out, &shown.stem(Side::Before))?;
-    shown.draw(&playback, Side::After)?.write(out, &shown.stem(Side::After))?;
+    draw_step(shown, &playback, Side::After)?.write(out, &shown.stem(Side::After))?;
     let pictures =
         [Side::Before, Side::After].map(|side| out.join(format!("{}.png", shown.stem(side))).display().to_string());
     let (behaviour, world) = (plan.behaviour.name().to_owned(), plan.worlds.title());

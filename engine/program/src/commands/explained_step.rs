@@ -6,82 +6,41 @@ use std::path::{Path, PathBuf};
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Phase, Plan, Playback, RunLog, SeenView, ViewStage};
 use engine::robot::Robot;
-use insight::folder::Redrawn;
+use insight::folder::{ExplainedStep, Redrawn, Side};
 use insight::report::{FrameData, FramePanel, Picture, frame};
 
-/// A step that has pictures in the folder of its run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct ExplainedStep {
-    pub(super) phase: Phase,
-    pub(super) step: usize,
-}
-
-/// When the picture was taken: as the robot chose, or at the end of the step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Side {
-    Before,
-    After,
-}
-
-impl ExplainedStep {
-    /// The name of the picture's files, without their ending.
-    pub(super) fn stem(self, side: Side) -> String {
-        let phase = match self.phase {
-            Phase::Learning => "",
-            Phase::Test => "test-",
-        };
-        let side = match side {
-            Side::Before => "before",
-            Side::After => "after",
-        };
-        format!("{phase}step-{}-{side}", self.step)
-    }
-
-    /// The step that a file of this name shows, if it is such a picture.
-    fn of_file(name: &str) -> Option<Self> {
-        let stem = name.strip_suffix(".svg").or_else(|| name.strip_suffix(".png"))?;
-        let (phase, rest) = match stem.strip_prefix("test-") {
-            Some(rest) => (Phase::Test, rest),
-            None => (Phase::Learning, stem),
-        };
-        let (step, _) = rest.strip_prefix("step-")?.rsplit_once('-')?;
-        let shown = Self { phase, step: step.parse().ok()? };
-        [Side::Before, Side::After].iter().any(|&side| shown.stem(side) == stem).then_some(shown)
-    }
-
-    /// Camera, each filter, grid, as the playback stands.
-    pub(super) fn draw(self, playback: &Playback<'_>, side: Side) -> Result<Picture> {
-        let (plan, cycle) = (playback.plan(), playback.cycle());
-        let phase = match self.phase {
-            Phase::Learning => "learning",
-            Phase::Test => "test",
-        };
-        let when = match side {
-            Side::Before => "when it chose",
-            Side::After => "at its end",
-        };
-        let behaviour = plan.behaviour.name();
-        let title = format!("{behaviour}, step {} of {phase}: what the robot saw {when}", self.step);
-        let image = &cycle.robot().photograph().unwrap_or_else(|| cycle.observation().sight().clone());
-        let mut panels = vec![FramePanel::image("camera", image)];
-        panels.extend(cycle.observation().depth.iter().map(|depth| FramePanel::image("depth", depth)));
-        let stages: Vec<ViewStage<'_>> = cycle.stages().collect();
-        let names: Vec<String> = stages.iter().map(ViewStage::name).collect();
-        panels.extend(stages.iter().zip(&names).map(|(stage, name)| FramePanel {
-            name,
-            format: stage.filter.writes,
-            pixels: stage.pixels,
-        }));
-        let views: Vec<SeenView> = cycle.views().collect();
-        frame(&FrameData {
-            title: &title,
-            width_px: image.width_px,
-            height_px: image.height_px,
-            panels: &panels,
-            views: &views,
-            state: cycle.state(),
-        })
-    }
+/// Camera, each filter, grid, as the playback stands.
+pub(super) fn draw_step(shown: ExplainedStep, playback: &Playback<'_>, side: Side) -> Result<Picture> {
+    let (plan, cycle) = (playback.plan(), playback.cycle());
+    let phase = match shown.phase {
+        Phase::Learning => "learning",
+        Phase::Test => "test",
+    };
+    let when = match side {
+        Side::Before => "when it chose",
+        Side::After => "at its end",
+    };
+    let behaviour = plan.behaviour.name();
+    let title = format!("{behaviour}, step {} of {phase}: what the robot saw {when}", shown.step);
+    let image = &cycle.robot().photograph().unwrap_or_else(|| cycle.observation().sight().clone());
+    let mut panels = vec![FramePanel::image("camera", image)];
+    panels.extend(cycle.observation().depth.iter().map(|depth| FramePanel::image("depth", depth)));
+    let stages: Vec<ViewStage<'_>> = cycle.stages().collect();
+    let names: Vec<String> = stages.iter().map(ViewStage::name).collect();
+    panels.extend(stages.iter().zip(&names).map(|(stage, name)| FramePanel {
+        name,
+        format: stage.filter.writes,
+        pixels: stage.pixels,
+    }));
+    let views: Vec<SeenView> = cycle.views().collect();
+    frame(&FrameData {
+        title: &title,
+        width_px: image.width_px,
+        height_px: image.height_px,
+        panels: &panels,
+        views: &views,
+        state: cycle.state(),
+    })
 }
 
 /// Draws again what a run's folder has of explained steps, and compares it byte for byte.
@@ -102,7 +61,7 @@ pub(super) fn redraw_steps(folder: &Path, plan: &Plan, seed: u64, log: &RunLog) 
         }
         for side in [Side::Before, Side::After] {
             // A step that the run does not have was never drawn of it.
-            let picture = if there { Some(shown.draw(&playback, side)?) } else { None };
+            let picture = if there { Some(draw_step(shown, &playback, side)?) } else { None };
             for (ending, drawn) in
                 [("svg", picture.as_ref().map(|p| p.svg.as_bytes())), ("png", picture.as_ref().map(|p| &p.png[..]))]
             {
@@ -130,21 +89,4 @@ fn steps_in(folder: &Path) -> Result<BTreeSet<ExplainedStep>> {
         steps.extend(name.to_str().and_then(ExplainedStep::of_file));
     }
     Ok(steps)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_of_pictures_say_the_step_and_nothing_else_is_taken_for_one() {
-        for shown in [ExplainedStep { phase: Phase::Learning, step: 12 }, ExplainedStep { phase: Phase::Test, step: 0 }]
-        {
-            assert_eq!(ExplainedStep::of_file(&format!("{}.svg", shown.stem(Side::After))), Some(shown));
-            assert_eq!(ExplainedStep::of_file(&format!("{}.png", shown.stem(Side::Before))), Some(shown));
-        }
-        for name in ["step-012-after.svg", "step--before.png", "step-3-during.svg", "paths.png", "step-3-after.txt"] {
-            assert_eq!(ExplainedStep::of_file(name), None, "{name}");
-        }
-    }
 }
