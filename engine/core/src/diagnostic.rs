@@ -133,8 +133,8 @@ pub struct Place {
     pub label: String,
 }
 
-/// An error for a person.
-#[derive(Debug, Clone)]
+/// An error for a person, also where it is printed with `{:?}`: by `unwrap`, and by a `main` that returns it.
+#[derive(Clone)]
 pub struct Diagnostic {
     /// A stable code such as `E-SCRIPT-FACT`; the exit status belongs to it, see [`Diagnostic::kind`].
     pub code: &'static str,
@@ -201,6 +201,12 @@ impl Diagnostic {
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "error[{}]: {}", self.code, self.message)
+    }
+}
+
+impl fmt::Debug for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.render(false).trim_end())
     }
 }
 

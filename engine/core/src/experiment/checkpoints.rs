@@ -59,7 +59,7 @@ impl Checkpoints<'_> {
         let (all, every) = (plan.settings.run.steps, if self.every == 0 { u64::MAX } else { self.every });
         while learning.steps() < all && learning.fault().is_none() {
             let next = every - learning.steps() % every;
-            learning.run(next.min(all - learning.steps()), stop, report, ledger)?;
+            learning.go_on(next.min(all - learning.steps()), stop, report, ledger)?;
             let stopped = stop.load(Ordering::Relaxed);
             if learning.fault().is_none() && (stopped || learning.steps() < all) {
                 self.keep(&mut learning, ledger)?;

@@ -186,7 +186,7 @@ impl CoDriver {
         (self.done, self.steps) = (0, self.steps + 1);
         self.eyes.look(observation)?;
         if !self.judge.remembers() {
-            self.state = self.eyes.state(observation, self.judge.digits());
+            self.state = self.eyes.state(observation, self.judge.digits())?;
             return Ok(());
         }
         self.tell(observation, self.last.unwrap_or(NO_ACTION));
@@ -196,7 +196,7 @@ impl CoDriver {
             self.steps = 0;
             return self.rest(observation);
         }
-        self.state = self.eyes.state(observation, self.judge.digits());
+        self.state = self.eyes.state(observation, self.judge.digits())?;
         Ok(())
     }
 
@@ -223,7 +223,7 @@ impl CoDriver {
             self.tell(observation, NO_ACTION);
             self.judge.take()?;
         }
-        self.state = self.eyes.state(observation, self.judge.digits());
+        self.state = self.eyes.state(observation, self.judge.digits())?;
         Ok(())
     }
 

@@ -15,6 +15,7 @@ use crate::sensors::observation::Observation;
 use crate::state::StateMap;
 
 use super::co_driver::CoDrivers;
+use super::doors::{Asked, no_action};
 use super::eyes::moved;
 use super::telling::{LaserTold, StepTold, tell};
 use super::{Eyes, Hand, Plan, Step};
@@ -183,7 +184,7 @@ impl<R: Robot> Cycle<R> {
             self.judge.recovered();
             self.fill_facts(NO_ACTION, self.steps);
             self.judge.take()?;
-            self.compose();
+            self.compose()?;
             self.leave = self.judge.leave();
             self.co_drivers.ask(self.judge.driver(), &self.observation, None)?;
         }
@@ -191,10 +192,11 @@ impl<R: Robot> Cycle<R> {
     }
 
     /// The states of what was looked at last.
-    fn compose(&mut self) {
+    fn compose(&mut self) -> Result<()> {
         for (eyes, state) in self.eyes.iter_mut().zip(&mut self.states) {
-            *state = eyes.state(&self.observation, self.judge.digits());
+            *state = eyes.state(&self.observation, self.judge.digits())?;
         }
+        Ok(())
     }
 
     /// The present state, as the script perceives it.
@@ -246,10 +248,12 @@ impl<R: Robot> Cycle<R> {
     /// Carries out an action, whatever guards say of it, and judges what came of it.
     ///
     /// # Errors
-    /// If a sensor, a filter or the script fails; the message names the step.
+    /// If a sensor, a filter or the script fails; the message names the step. `E-DOOR` for an action that the robot does not
+    /// have, and for what a robot or a state map of somebody's own must not give.
     pub fn step(&mut self, action: usize) -> Result<Step> {
         let (index, state, potential, driver) = (self.steps, self.state(), self.potential, self.co_drivers.by());
-        self.robot.act(self.actions[action])?;
+        let Some(&twist) = self.actions.get(action) else { return no_action(action, self.actions.len()).fail() };
+        self.robot.act(twist)?;
         self.since_recovery += 1;
         self.perceive(false)?;
         self.fill_facts(action, index + 1);
@@ -260,7 +264,7 @@ impl<R: Robot> Cycle<R> {
         let hop = self.since_recovery >= self.stay_steps && verdict.then.is_none();
         let moves = hop || verdict.then.is_some();
         if self.judge.remembers() {
-            self.compose();
+            self.compose()?;
             self.leave = self.judge.leave();
             // Where the robot is put elsewhere, the uses are asked again there.
             if !moves {
@@ -342,15 +346,16 @@ impl<R: Robot> Cycle<R> {
 
     /// Sense, filter, state.
     fn perceive(&mut self, jumped: bool) -> Result<()> {
+        let asked = Asked::of(&self.observation);
         self.robot.observe(&mut self.observation)?;
+        asked.check(&self.observation)?;
         for eyes in &mut self.eyes {
             if eyes.keep() {
                 eyes.moved(&moved(&self.observation, self.period_s, jumped))?;
             }
             eyes.look(&self.observation)?;
         }
-        self.compose();
-        Ok(())
+        self.compose()
     }
 
     fn fill_facts(&mut self, action: usize, step: u64) {

@@ -1,6 +1,7 @@
 //! One way of perceiving: filter chains, a grid over the mask of each, and a map from all of them to a state.
 
 use super::SeenView;
+use super::doors::no_state;
 use crate::diagnostic::Result;
 use crate::filter::Chain;
 use crate::geometry::Twist;
@@ -46,6 +47,8 @@ pub struct Eyes {
     /// The grid of each view.
     pub(super) grids: Vec<Grid>,
     pub(super) map: Box<dyn StateMap>,
+    /// How many states it says that there are.
+    states: usize,
     /// What the views are called; nothing for the view without a name.
     names: Vec<Option<String>>,
     /// What is looked for in the mask of each view besides, and the rays of the camera.
@@ -84,6 +87,7 @@ impl Eyes {
             chains,
             alike,
             grids,
+            states: map.states(),
             map,
             names,
             looks,
@@ -121,7 +125,7 @@ impl Eyes {
     #[must_use]
     pub(super) fn with_map(self, map: Box<dyn StateMap>) -> Self {
         // What the map reads, it alone knows.
-        Self { map, closed: false, ..self }
+        Self { states: map.states(), map, closed: false, ..self }
     }
 
     /// From now on these things are looked for in the masks.
@@ -213,10 +217,14 @@ impl Eyes {
     }
 
     /// The state of the image that was looked at last, with the other parts of a state.
-    pub(super) fn state(&mut self, observation: &Observation, digits: &[usize]) -> usize {
+    ///
+    /// # Errors
+    /// If the map gives one that it does not have.
+    pub(super) fn state(&mut self, observation: &Observation, digits: &[usize]) -> Result<usize> {
         let image = observation.read_as(self.chains[0].likes());
         let (mask, grid) = (self.chains[0].mask(), &self.grids[0]);
-        self.map.encode(Percept { image, mask, grid, grids: &self.grids, digits })
+        let state = self.map.encode(Percept { image, mask, grid, grids: &self.grids, digits });
+        if state < self.states { Ok(state) } else { no_state(state, self.states).fail() }
     }
 
     /// What the image that was looked at last shows in each view. Allocates nothing after the first time.

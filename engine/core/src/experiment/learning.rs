@@ -46,7 +46,7 @@ pub struct Learned {
 }
 
 /// Learning that a failure ended: the failure, and what was learned before it.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct BrokenOff {
     /// Why it ended.
     pub error: Box<Diagnostic>,
@@ -57,6 +57,12 @@ pub struct BrokenOff {
 impl std::fmt::Display for BrokenOff {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         self.error.fmt(f)
+    }
+}
+
+impl std::fmt::Debug for BrokenOff {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Debug::fmt(&self.error, f)
     }
 }
 
@@ -136,14 +142,14 @@ pub(super) fn learn_through(
     let others: Vec<&Plan> = plan.rescored().chain(after).collect();
     let mut learning = Learning::watched(plan.first_leg(), seed, &others)?;
     ledger.set_out_from(&learning.set_out_from);
-    learning.run(plan.first_steps(), stop, report, ledger)?;
+    learning.go_on(plan.first_steps(), stop, report, ledger)?;
     for (from, carry, leg, steps) in plan.swaps() {
         if learning.steps() < from {
             break;
         }
         let said = if carry == Carry::Rescore { learning.cycle.dismiss_witness() } else { Vec::new() };
         learning.swap_rejudged(leg, carry, &said, ledger)?;
-        learning.run(steps, stop, report, ledger)?;
+        learning.go_on(steps, stop, report, ledger)?;
     }
     Ok(learning)
 }
@@ -247,8 +253,21 @@ impl<R: Robot, L: Learner> Learning<R, L> {
     /// Learns for so many more steps, or until `stop` is set at the end of a window, or something fails.
     ///
     /// # Errors
-    /// What failed, if it was the first step; a later failure is kept, see [`Learning::fault`].
+    /// What failed, in this run or an earlier one. What was learned before can be had all the same, see
+    /// [`Learning::finish`].
     pub fn run(
+        &mut self,
+        steps: u64,
+        stop: &AtomicBool,
+        report: &(dyn Fn(Progress) + Sync),
+        ledger: &mut Ledger,
+    ) -> Result<()> {
+        self.go_on(steps, stop, report, ledger)?;
+        self.fault.clone().map_or(Ok(()), Err)
+    }
+
+    /// As [`Learning::run`], where a failure after the first step is only kept.
+    pub(super) fn go_on(
         &mut self,
         steps: u64,
         stop: &AtomicBool,

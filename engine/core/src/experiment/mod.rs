@@ -16,6 +16,7 @@ mod course;
 mod cycle;
 mod digest;
 mod disagreement;
+mod doors;
 mod drive;
 mod eyes;
 mod learning;

@@ -210,8 +210,13 @@ impl Parts<'_> {
             return Ok(None);
         }
         let few = map.states() <= MAX_STATES;
-        let states =
-            few.then(|| (0..map.states()).map(|state| map.mirrored(state)).collect::<Option<Vec<_>>>()).flatten();
+        let states = few
+            .then(|| {
+                (0..map.states())
+                    .map(|state| map.mirrored(state).filter(|other| *other < map.states()))
+                    .collect::<Option<Vec<_>>>()
+            })
+            .flatten();
         let Some(states) = states else {
             let error = Diagnostic::new("E-MIRROR", "the states of this behaviour have no mirror images");
             let help = Some("leave 'mirror' out".to_owned());

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::changes::{changed, with_params};
+use super::doors::check_states;
 use super::parts::Parts;
 use super::plan_worlds::load_worlds;
 use super::{Eyes, Leg, Member, Origin, UsedPolicy, outlook};
@@ -266,8 +267,10 @@ impl Plan {
     /// What a learner is made for: the states of a map, the plan's actions, and the stream of a seed.
     ///
     /// # Errors
-    /// If `learner.mirror` is set, and an action has no counterpart that turns the other way or the map has no sides.
+    /// If `learner.mirror` is set, and an action has no counterpart that turns the other way or the map has no sides; `E-DOOR` if
+    /// the map has no states, too many, or others than its digits tell apart.
     pub fn task(&self, map: &dyn StateMap, seed: u64) -> Result<Task> {
+        check_states(map)?;
         Ok(Task {
             digits: map.digits(),
             states: map.states(),

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::by_world::{WorldCounts, WorldFigures};
 use super::digest::StateHash;
+use super::doors::check_policy;
 use super::measured::figures;
 use super::probes::Probes;
 use super::relay::UsedDrivers;
@@ -102,7 +103,7 @@ impl Decider {
 /// Tests a frozen policy for the plan's `run.test_steps`, or until `stop` is set.
 ///
 /// # Errors
-/// If a sensor, a filter or the script fails.
+/// If a sensor, a filter or the script fails; `E-POLICY` if the policy has other actions or states than the plan.
 pub fn test(plan: &Plan, policy: &Policy, seed: u64, stop: &AtomicBool) -> Result<TestRun> {
     test_and_watch(plan, policy, seed, stop, &mut ())
 }
@@ -118,6 +119,7 @@ pub fn test_and_watch(
     stop: &AtomicBool,
     also: &mut impl Observer<SimulatedRobot>,
 ) -> Result<TestRun> {
+    check_policy(plan, policy)?;
     let mut used = UsedDrivers::new(plan, Phase::Test.seed(seed));
     match used.is_empty() {
         true => test_choices(plan, seed, stop, &mut frozen(plan, policy, seed), also),

@@ -57,6 +57,12 @@ impl Twist {
     pub const fn new(linear_m_per_s: f64, angular_rad_per_s: f64) -> Self {
         Self { linear_m_per_s, angular_rad_per_s }
     }
+
+    /// Both speeds are numbers.
+    #[must_use]
+    pub const fn is_finite(self) -> bool {
+        self.linear_m_per_s.is_finite() && self.angular_rad_per_s.is_finite()
+    }
 }
 
 /// The rotation that turns by `roll` about x, then `pitch` about y, then `yaw` about z (fixed axes, radians).

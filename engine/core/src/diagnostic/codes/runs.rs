@@ -45,6 +45,15 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          runs/wall/1-30 runs/mine/1-30.",
     ),
     (
+        "E-DOOR",
+        Kind::Fault,
+        "A part of somebody's own that the library was given does not keep to its door: a robot measured something that is no \
+         number, a learner chose an action that the robot does not have, a state map gave a state that it does not have, or \
+         says of its states what cannot be.\n\
+         The documentation of the door (Robot, Learner, Chooser, StateMap) says what it may give; a beam that meets nothing \
+         measures the greatest range. Nothing that ships with the engine does this.",
+    ),
+    (
         "E-FROM",
         Kind::State,
         "A run cannot go on from another one: its states, actions or way of learning are others, its seed is not there, or it \
