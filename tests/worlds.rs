@@ -195,6 +195,7 @@ fn a_wrong_list_of_worlds_or_a_wrong_draw_is_one_error_with_what_to_write() {
         "randomise(#{});".to_owned(),
         "randomise(#{ \"run.period_s\": [0.3, 0.6] });".to_owned(),
         "randomise(#{ \"camera.tilt_dg\": [40, 44] });".to_owned(),
+        "randomise(#{ start: #{ yaw_deg: [0, 10] } });".to_owned(),
         "randomise(#{ \"camera.tilt_deg\": [44, 40] });".to_owned(),
         "randomise(#{ \"camera.tilt_deg\": 42 });".to_owned(),
         "randomise(#{ \"camera.tilt_deg\": [40] });".to_owned(),

@@ -130,7 +130,12 @@ impl SetupReader<'_> {
 
 fn cannot_vary(wrong: impl Fn(Position, String, &str, String) -> Diagnostic, key: &str, at: Position) -> Diagnostic {
     let all = VariedKey::all;
+    let of_group: Vec<_> = all().filter(|known| known.split_once('.').is_some_and(|(group, _)| group == key)).collect();
     let help = match nearest_name(key, all().filter(|known| !known.contains("NAME"))) {
+        _ if !of_group.is_empty() => format!(
+            "write {}",
+            of_group.iter().map(|known| format!("\"{known}\": [low, high]")).collect::<Vec<_>>().join(" or ")
+        ),
         Some(near) => format!("did you mean '{near}'?"),
         None => format!("these can: {}", all().collect::<Vec<_>>().join(", ")),
     };

@@ -56,7 +56,7 @@ impl<'a> CertificateFolder<'a> {
             };
             let plan = plan.clone().with_changes(&there)?;
             let tested = decider.test(&plan, draw.seed, &AtomicBool::new(false), &mut ())?;
-            let name = format!("{}: {} failures; its first 800 steps", draw.world, draw.failures);
+            let name = format!("{}: {} failures", draw.world, whole(draw.failures));
             Ok((name, plan, tested))
         };
         let worst = worst.map(again).collect::<Result<Vec<_>>>()?;
@@ -150,7 +150,7 @@ pub fn certificate_lines(certificate: &Certificate) -> Vec<String> {
             rate(failures),
             rate(untrained_failures)
         ),
-        format!("A failure in {steps} steps: {} such {unit}.", share(failing)),
+        format!("At least one failure in {} steps: {} such {unit}.", whole(*steps), share(failing)),
     ];
     if *learned_in > 0 {
         lines.push(format!(

@@ -41,7 +41,8 @@ pub struct CertifiedData<'a> {
 pub fn certified(data: &CertifiedData<'_>) -> Result<Picture> {
     let plot_top_px = BELOW_TITLE_PX + data.lines.len() as f64 * LINE_PX + 12.0;
     let legend_px = plot_top_px + PLOT_PX + BELOW_PX + 26.0;
-    let panels_px = legend_px + 48.0;
+    let heading_px = legend_px + 44.0;
+    let panels_px = heading_px + 32.0;
     let height_px = if data.worst.is_empty() { legend_px + 24.0 } else { panels_px + PANEL_PX + 24.0 };
     let mut sheet = Sheet::new(WIDTH_PX, height_px, data.title);
     for (line, text) in data.lines.iter().enumerate() {
@@ -50,6 +51,10 @@ pub fn certified(data: &CertifiedData<'_>) -> Result<Picture> {
     }
     curve(&mut sheet, data.certificate, plot_top_px);
     explain(&mut sheet, legend_px);
+    if !data.worst.is_empty() {
+        let heading = "The worst, with the path of the first 800 steps";
+        sheet.text(words(heading, spot(MARGIN_PX, heading_px), LABEL_PX, TEXT));
+    }
     for (index, (name, world, path)) in data.worst.iter().take(MOST_PANELS).enumerate() {
         panel(&mut sheet, index, panels_px, name, world, path);
     }
