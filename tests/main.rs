@@ -32,6 +32,8 @@ mod determinism;
 mod docs;
 /// Editions of the language: upgraded, stored; the language as data.
 mod editions;
+/// Exported policies: their kit, in C and in Python, for this processor and another.
+mod export;
 /// Every filter that ships keeps the contract, in every form.
 mod filters;
 /// Scripts that were once called a success and are none.

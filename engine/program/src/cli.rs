@@ -3,6 +3,7 @@
 mod certify;
 mod changes;
 mod check;
+mod export;
 mod language;
 mod new;
 mod pack;
@@ -18,6 +19,7 @@ use clap::{Args, Parser, Subcommand};
 pub(crate) use certify::CertifyArguments;
 pub(crate) use changes::{Changes, SettingChanges};
 pub(crate) use check::{CheckArguments, CheckFormat};
+pub(crate) use export::ExportArguments;
 pub(crate) use language::{ReferenceArguments, UpgradeArguments};
 pub(crate) use new::{NewArguments, NewCommand, WorldArguments, WorldCommand};
 pub(crate) use pack::*;
@@ -50,6 +52,8 @@ pub(crate) enum Command {
     Explain(ExplainArguments),
     /// Runs beside one another: curves, figures with intervals and exact tests, states, settings, lines
     Compare(CompareArguments),
+    /// Write a learned policy as C and Python for other programs, with a kit that checks them
+    Export(ExportArguments),
     /// List the runs that stand here; tag and prune them
     Runs(RunsArguments),
     /// Judge a recorded run by another script, and show which states change their action
@@ -89,6 +93,7 @@ impl Command {
             Self::Replay(arguments) => arguments.json,
             Self::Explain(arguments) => arguments.json,
             Self::Compare(arguments) => arguments.json,
+            Self::Export(arguments) => arguments.json,
             Self::Runs(arguments) => arguments.json,
             Self::Rescore(arguments) => arguments.json,
             Self::Watch(arguments) => arguments.json,

@@ -36,6 +36,7 @@ fn run(command: &Command, console: &mut Console) -> Result<u8, ConsoleError> {
         Command::Replay(arguments) => commands::replay::run(arguments, console),
         Command::Explain(arguments) => commands::explain::run(arguments, console),
         Command::Compare(arguments) => commands::compare::run(arguments, console),
+        Command::Export(arguments) => commands::export::run(arguments, console),
         Command::Runs(arguments) => commands::runs::run(arguments, console),
         Command::Rescore(arguments) => commands::rescore::run(arguments, console),
         Command::Watch(arguments) => commands::watch::run(arguments, console),

@@ -135,6 +135,13 @@ impl Policy {
         self.row(state).map(|row| super::q_table::best_of(&row.values))
     }
 
+    /// What each action is worth in a state, listed or answered from what is known of others; nothing in a state of which
+    /// nothing is known.
+    #[must_use]
+    pub fn values_of(&self, state: usize) -> Option<Vec<f64>> {
+        self.values(state, &mut PooledRow::default()).map(<[f64]>::to_vec)
+    }
+
     /// The values of a state's actions, in `room` where the state has no row of its own; nothing in a state of which it knows
     /// nothing.
     fn values<'a>(&'a self, state: usize, room: &'a mut PooledRow) -> Option<&'a [f64]> {

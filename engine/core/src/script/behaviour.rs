@@ -4,6 +4,7 @@ use super::guards;
 use super::outline::ScriptOutline;
 use super::params::{Param, ParamValues};
 use super::setup::SettingPlaces;
+use crate::allowed::Allowed;
 use crate::diagnostic::{Mistakes, Result, SourceText};
 use crate::geometry::Twist;
 use crate::judge::compiled::CompiledScript;
@@ -223,6 +224,11 @@ impl Behaviour {
     /// The guards in their order.
     pub fn guards(&self) -> impl Iterator<Item = &RuleText> {
         self.compiled.guards.iter().map(|guard| &guard.text)
+    }
+
+    /// Which of these actions each guard forbids while it holds, in the order of the guards.
+    pub fn forbidden(&self, actions: &[Twist]) -> impl Iterator<Item = Allowed> {
+        self.compiled.guards.iter().map(|guard| guard.forbidden(actions))
     }
 
     /// The uses of learned policies in their order, each with the place of its policy among those that the script names.

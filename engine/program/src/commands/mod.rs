@@ -8,6 +8,7 @@ pub(crate) mod check;
 pub(crate) mod compare;
 pub(crate) mod explain;
 mod explained_step;
+pub(crate) mod export;
 pub(crate) mod filter;
 pub(crate) mod new;
 pub(crate) mod pack;

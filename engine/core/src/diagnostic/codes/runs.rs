@@ -54,6 +54,13 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          measures the greatest range. Nothing that ships with the engine does this.",
     ),
     (
+        "E-EXPORT",
+        Kind::Input,
+        "What was learned cannot be written as source code for other programs.\n\
+         A behaviour that combines or uses policies has no table of its own; a filter may have no port, of those that ship `where`, \
+         `floor` and `relief`, of others none; of more than 65,536 states the table would be too large.",
+    ),
+    (
         "E-FROM",
         Kind::State,
         "A run cannot go on from another one: its states, actions or way of learning are others, its seed is not there, or it \
