@@ -181,3 +181,58 @@ fn who_is_paid_for_contacts_must_not_live_by_them() {
     let run = &runs(HIT, Some(1), 400, 1)[0];
     assert!(run.verdict.conditions.iter().all(|condition| condition.name != "touches little"));
 }
+
+#[test]
+fn a_fig_leaf_that_any_two_robots_meet_does_not_make_a_reward_a_success() {
+    let near = format!("{HIT}rule \"near\" when laser.right < 1.0 => 0.1;");
+    for leaf in [
+        "test.distance_m != untrained.distance_m",
+        "abs(test.mean_speed / untrained.mean_speed - 1) > 0.000001",
+        "(test.distance_m < untrained.distance_m || test.distance_m > untrained.distance_m)",
+    ] {
+        let script = format!("{near}success \"earns\" when test.reward_per_1000 > -1000 && {leaf};");
+        let runs = assert_none(&script, Some(1), 2000, 1);
+        assert_eq!(runs[0].verdict.why, Because::RewardOnly, "{leaf}");
+        assert_eq!(runs[0].base_lines.untrained_others.len(), 3);
+    }
+    // Beside what no robot that knows nothing meets a reward may be asked for: who does not look is another question.
+    let wall = std::fs::read_to_string(root().join("scripts/wall.rhai")).unwrap();
+    let rules = wall.lines().filter(|line| line.starts_with("rule")).collect::<Vec<_>>().join("\n");
+    let earns = "success \"earns\" when test.reward_per_1000 > -10 && test.failures_per_1000 <= 5;";
+    assert_ne!(runs(&format!("{rules}\n{earns}"), None, 2000, 1)[0].verdict.why, Because::RewardOnly);
+}
+
+#[test]
+fn how_the_robot_turns_is_its_own_doing_however_it_is_measured() {
+    for turns in [
+        "rule \"turns\" when abs(robot.angular) > 0.3 => 0.1;",
+        "rule \"turns\" when abs(change(odometry.turned_deg)) > 5 => 0.1;",
+        "measure turn = abs(previous.robot.angular); rule \"turns\" when turn > 0.3 => 0.1;",
+    ] {
+        let script = format!("{HIT}{turns}success \"turns\" when test.per_1000(\"turns\") > 100;");
+        assert_eq!(runs(&script, Some(1), 400, 1)[0].verdict.why, Because::RewardOnly, "{turns}");
+    }
+    // A wall ends how it gets on.
+    let on = format!("{HIT}rule \"on\" when robot.linear > 0.1 => 0.1;success \"on\" when test.per_1000(\"on\") > 2;");
+    assert_ne!(runs(&on, Some(1), 400, 1)[0].verdict.why, Because::RewardOnly);
+}
+
+#[test]
+fn goals_and_stages_that_the_robot_reaches_by_its_own_doing_are_no_success() {
+    let why = |script: &str| runs(script, Some(1), 1000, 1)[0].verdict.why;
+    let slow = "rule \"slow\" when action.linear < 0.1 for 2 steps => 1 then goal;";
+    let late = "rule \"late\" when time.attempt_s > 20 => -1 then fail;";
+    let goals = "success \"goals\" when test.goal_rate > 0.5 && test.goal_s < 100;";
+    assert_eq!(why(&format!("{slow}{late}{goals}")), Because::RewardOnly);
+    // Once the world may end an attempt, how attempts end tells something of it.
+    assert_ne!(why(&format!("{slow}{late}{HIT}{goals}")), Because::RewardOnly);
+    let stages = |first: &str| {
+        format!(
+            "stages([\"a\", \"b\"]); {HIT}rule \"on\" in \"a\" when {first} => 0 then stage \"b\";
+             rule \"back\" in \"b\" when action.linear > 0.1 => 0 then stage \"a\";
+             success \"changes\" when test.stages_per_1000 > 20 && test.per_1000(\"back\") > 10;"
+        )
+    };
+    assert_eq!(why(&stages("action.linear < 0.1")), Because::RewardOnly);
+    assert_ne!(why(&stages("laser.front < 1.5")), Because::RewardOnly);
+}

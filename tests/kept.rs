@@ -1,6 +1,6 @@
 //! Nothing that a folder holds is written over, tagged away or forged without a word.
 
-use crate::support::Bench;
+use crate::support::{Bench, SCRIPT};
 
 #[test]
 fn one_seed_and_many_do_not_replace_one_another() {
@@ -30,6 +30,76 @@ fn a_test_writes_over_no_run_and_over_no_other_test() {
     assert_eq!(bench.read("x/test.json"), first);
     test(&["x", "--steps", "100", "--force"]);
     assert_ne!(bench.read("x/test.json"), first);
+}
+
+#[test]
+fn a_table_of_other_values_is_no_policy_of_the_run_whatever_its_digest_line_says() {
+    let bench = Bench::new();
+    bench.engine(&["run", "short.rhai", "--out", "a"]);
+    bench.engine(&["run", "short.rhai", "--seed", "2", "--out", "b"]);
+    let own = bench.read("a/policy.toml");
+    let line = |text: &str| text.lines().find(|line| line.starts_with("run_sha256")).unwrap().to_owned();
+    let other = bench.read("b/policy.toml");
+    bench.write("a/policy.toml", other.replace(&line(&other), &line(&own)));
+    let both = format!("policy(\"one\", \"a\");\npolicy(\"two\", \"b\");\n{SCRIPT}");
+    bench.write("both.rhai", both.replace("steps: 800, ", ""));
+    for command in [
+        &["test", "a"][..],
+        &["compare", "a", "b"],
+        &["replay", "a"],
+        &["explain", "a", "--step", "3"],
+        &["rescore", "a", "short.rhai"],
+        &["run", "short.rhai", "--from", "a", "--out", "c"],
+        &["run", "short.rhai", "--branch", "a@10", "--out", "c"],
+        &["run", "both.rhai", "--out", "c"],
+    ] {
+        let told = bench.failure(command);
+        assert!(told.starts_with("exit status 7\n") && told.contains("E-LOG-RUN"), "{command:?}: {told}");
+        assert!(told.contains("does not hold what"), "{command:?}: {told}");
+    }
+    // One changed value is enough.
+    let visits = own.lines().find(|line| line.starts_with("visits")).unwrap();
+    bench.write("a/policy.toml", own.replacen(visits, "visits = 77777", 1));
+    assert!(bench.failure(&["test", "a"]).contains("E-LOG-RUN"));
+    // What was written before digests were kept is read, and what stands alone belongs to nobody.
+    let summary = bench.read("a/summary.json");
+    let older: Vec<&str> = summary.lines().filter(|line| !line.contains("policy_sha256")).collect();
+    bench.write("a/summary.json", older.join("\n"));
+    assert!(!bench.failure(&["test", "a"]).contains("E-LOG-RUN"));
+    bench.write("a/policy.toml", &own);
+    assert!(bench.ok(&["replay", "a", "--verify"]).contains("reproduced bit for bit"));
+    for file in ["summary.json", "log.bin"] {
+        std::fs::remove_file(bench.path().join("a").join(file)).unwrap();
+    }
+    bench.write("a/policy.toml", own.replacen(visits, "visits = 77777", 1));
+    assert!(!bench.failure(&["test", "a"]).contains("E-LOG-RUN"));
+}
+
+#[test]
+fn a_tagged_run_makes_room_for_another_one_and_keeps_what_was_said_of_it() {
+    let bench = Bench::new();
+    bench.engine(&["run", "short.rhai", "--out", "q"]);
+    bench.ok(&["runs", "tag", "q", "best"]);
+    bench.engine(&["rescore", "q", "short.rhai"]);
+    bench.engine(&["run", "short.rhai", "--out", "q"]);
+    assert_eq!((bench.read("q/tag.txt").as_str(), bench.path().join("q.2").exists()), ("best\n", false));
+    let told = bench.engine(&["run", "short.rhai", "--seed", "2", "--out", "q", "--force"]);
+    assert!(String::from_utf8_lossy(&told.stderr).contains("has a tag: it is kept, in q.2"), "{told:?}");
+    assert!(bench.read("q.2/run.toml").contains("seed = 1\n") && bench.read("q/run.toml").contains("seed = 2\n"));
+    assert_eq!(bench.read("q.2/tag.txt"), "best\n");
+    assert!(bench.path().join("q.2/rescore-short/rescore.json").exists());
+    assert!(!bench.path().join("q/tag.txt").exists() && !bench.path().join("q/rescore-short").exists());
+}
+
+#[test]
+fn photographs_are_not_drawn_into_the_folder_of_a_run_or_a_test() {
+    let bench = Bench::new();
+    bench.engine(&["run", "short.rhai", "--out", "q"]);
+    bench.engine(&["test", "q", "--out", "x"]);
+    for out in ["q", "x"] {
+        let told = bench.failure(&["filter", "short.rhai", "q/frame.png", "--out", out]);
+        assert!(told.starts_with("exit status 6\n") && told.contains("E-RUN-TAKEN"), "{told}");
+    }
 }
 
 #[test]

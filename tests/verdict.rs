@@ -247,3 +247,15 @@ fn a_success_over_what_the_world_does_not_have_is_a_mistake() {
     assert_eq!((wrong.code, wrong.message.as_str()), ("E-SCRIPT-SUCCESS", "this world has no mover \"pray\""));
     assert_eq!(wrong.help.as_deref(), Some("did you mean \"prey\"?"));
 }
+
+#[test]
+fn who_does_not_look_comes_to_the_same_figures_whether_images_are_drawn_or_not() {
+    let never = AtomicBool::new(false);
+    let wall = std::fs::read_to_string(root().join("scripts/wall.rhai")).unwrap();
+    let closed = test_untrained(&written(&wall), 7, &never).unwrap();
+    // A rule that reads what the camera sees, and changes nothing.
+    let looks = format!("{wall}\nrule \"sees\" when camera.coverage > 2.0 || camera.coverage >= 0.0 => 0.0;");
+    let mut open = test_untrained(&written(&looks), 7, &never).unwrap();
+    assert!(open.rules.pop().unwrap().fired > STEPS / 2);
+    assert_eq!(open, closed);
+}

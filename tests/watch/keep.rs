@@ -146,3 +146,20 @@ fn a_script_that_uses_a_policy_learns_on_while_the_policy_stays_the_same() {
     let told = served.bench.ok(&["replay", "kept/2", "--verify"]);
     assert!(told.contains("1600 steps of learning"), "{told}");
 }
+
+#[test]
+fn the_run_of_another_script_is_not_replaced_by_watching_and_an_older_one_of_this_script_is() {
+    let bench = Bench::new();
+    bench.write("other.rhai", SCRIPT);
+    for (script, out) in [("other.rhai", "theirs"), ("short.rhai", "one")] {
+        bench.engine(&["run", script, "--seeds", if out == "one" { "1" } else { "2" }, "--out", out]);
+        let before = bench.read(&format!("{out}/run.toml"));
+        let told = bench.failure(&["watch", "short.rhai", "--seeds", "2", "--no-open", "--port", "0", "--out", out]);
+        assert!(told.starts_with("exit status 6\n") && told.contains("E-RUN-TAKEN"), "{told}");
+        assert_eq!(bench.read(&format!("{out}/run.toml")), before);
+    }
+    bench.engine(&["run", "short.rhai", "--seeds", "2", "--steps", "400", "--out", "kept"]);
+    let served = Served::of(bench, "short.rhai", &["--port", "0", "--out", "kept"]);
+    done(&mut served.events(), 1);
+    written(&served, 800);
+}

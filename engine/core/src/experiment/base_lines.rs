@@ -2,7 +2,8 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::{Choice, Chooser, Plan, TestRun, WINDOW_STEPS, test_choices};
+use super::testing::test_without_looking;
+use super::{Choice, Chooser, Plan, TestRun, WINDOW_STEPS};
 use crate::allowed::Allowed;
 use crate::diagnostic::Result;
 use crate::geometry::Twist;
@@ -14,6 +15,8 @@ use crate::verdict::{BaseLines, BlindFigures, TestFigures};
 const GLANCE_STEPS: u64 = 2 * WINDOW_STEPS;
 /// So many failures in 1,000 steps are too many, and twice those of the test.
 const MOST_FAILURES: f64 = 20.0;
+/// So many other robots that know nothing: what holds of one in two holds of none of these in one case of eight.
+const OTHERS: u64 = 3;
 
 /// What stands beside a test. Robots that do not look are asked only if it is a success without them.
 ///
@@ -51,6 +54,9 @@ impl Ahead {
         let mut lines = BaseLines::of_untrained(self.untrained);
         if plan.success().verdict(&tested.figures, &lines).is_success() {
             lines.blind = best_blind(plan, seed, tested, &lines.untrained, self.glances, stop)?;
+            if plan.success().reads_rewards() {
+                lines.untrained_others = others(plan, seed, stop)?;
+            }
         }
         Ok(lines)
     }
@@ -64,9 +70,18 @@ pub fn test_untrained(plan: &Plan, seed: u64, stop: &AtomicBool) -> Result<TestF
     test_blind(plan, vec![1; plan.motions().len()], seed, stop)
 }
 
+/// Other robots that know nothing, in the same test.
+fn others(plan: &Plan, seed: u64, stop: &AtomicBool) -> Result<Vec<TestFigures>> {
+    let other = |number: u64| {
+        let mut robot = Blind::new(vec![1; plan.motions().len()], seed.wrapping_add(number));
+        test_without_looking(plan, seed, stop, &mut robot)
+    };
+    (1..=OTHERS).map(other).collect()
+}
+
 /// Tests a robot that does not look.
 fn test_blind(plan: &Plan, weights: Vec<u64>, seed: u64, stop: &AtomicBool) -> Result<TestFigures> {
-    Ok(test_choices(plan, seed, stop, &mut Blind::new(weights, seed), &mut ())?.figures)
+    test_without_looking(plan, seed, stop, &mut Blind::new(weights, seed))
 }
 
 /// The plan with a test so short that a robot that does not look is not gone on with if it fails too often.

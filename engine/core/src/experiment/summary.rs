@@ -44,6 +44,9 @@ pub struct Summary {
     pub base_lines: BaseLines,
     /// SHA-256 over every step of learning and the learned table.
     pub state_hash: String,
+    /// SHA-256 over the values of what was learned, see [`Policy::digest`]; absent if nothing was, and from older runs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub policy_sha256: Option<String>,
     /// SHA-256 over the records of the log, as its last digest; absent if none was kept.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub log_sha256: Option<String>,
@@ -91,6 +94,7 @@ impl Summary {
             ),
             interrupted: steps < wanted || test.steps < plan.settings.run.test_steps,
             state_hash: learned.map_or(&tested.state_hash, |learned| &learned.state_hash).clone(),
+            policy_sha256: learned.map(|learned| learned.policy.digest().to_string()),
             log_sha256: None,
             verdict: success.verdict(&test, lines),
             base_lines: lines.clone(),

@@ -148,6 +148,19 @@ pub fn test_choices(
     test_robot(plan, &mut cycle, chooser, stop, also)
 }
 
+/// Tests whoever chooses without looking: no image is drawn unless the script itself reads what the camera sees. The figures are
+/// those of [`test_choices`].
+pub(super) fn test_without_looking(
+    plan: &Plan,
+    seed: u64,
+    stop: &AtomicBool,
+    chooser: &mut impl Chooser,
+) -> Result<TestFigures> {
+    let eyes = if plan.behaviour.reads_views() { plan.eyes()? } else { plan.eyes()?.closed() };
+    let mut cycle = Cycle::with_eyes(plan, Phase::Test.robot(plan, seed)?, eyes, Vec::new())?;
+    Ok(test_robot(plan, &mut cycle, chooser, stop, &mut ())?.figures)
+}
+
 /// Tests the plan's combined policies as one; the plan's script judges.
 fn test_combined(
     plan: &Plan,

@@ -60,9 +60,15 @@ pub(crate) fn unknown_name_at(source: &SourceText, at: usize, name: &str, own_na
         // `red.seen`: what is read of it is a fact.
         None if source.text[at..].strip_prefix(name).is_some_and(|rest| rest.starts_with('.')) => diagnostic
             .help(format!("a view of this name is made by view(\"{0}\", filter(\"colour\"));", printable(name))),
+        // As other languages write it, and as the reference names it: `laser[beam]`.
+        None if source.text[..at].ends_with("laser[") => diagnostic.help(BEAMS),
         None => diagnostic.help(format!("define it first: let {} = ...;", printable(name))),
     }
 }
+
+/// How the beams of the laser are read.
+pub(crate) const BEAMS: &str =
+    "a beam has a whole number, from 0 on the right: laser[90]; what lies ahead or to a side has a name: laser.front";
 
 /// A word for what a script is not told, with what there is instead.
 fn only_the_simulator_knows(source: &SourceText, at: usize, name: &str, help: String) -> Diagnostic {

@@ -4,6 +4,7 @@
 //! judging of it: counters, and what was calibrated. Conditions and values are small native trees; what was not understood
 //! is left to the interpreter, inside limits that are counted, never timed.
 
+pub(crate) mod asked_range;
 mod calibrated;
 pub(crate) mod compiled;
 pub(crate) mod evaluate;

@@ -1,5 +1,6 @@
 //! Whether a rule can fire at all, and a guard or a use hold: intervals through its condition.
 
+use super::asked_range::AskedRange;
 use super::expression::{Arithmetic, BeamSpan, Comparison, Flag, Number};
 use super::fact_columns::Reach;
 use super::fact_table::FactId;
@@ -132,12 +133,11 @@ fn impossible(flag: &Flag, limits: &Limits) -> Option<String> {
     }
 }
 
-/// What a comparison with a constant asks of a fact: at least and at most so much, and whether the bound itself will do.
+/// What a comparison with a constant asks of a fact.
 #[derive(Clone, Copy)]
 struct Asked {
     fact: (FactId, usize),
-    from: (f64, bool),
-    to: (f64, bool),
+    range: AskedRange,
 }
 
 impl Asked {
@@ -153,22 +153,12 @@ impl Asked {
             (Number::Constant(limit), read) => (fact(read)?, comparison.turned(), *limit),
             _ => return None,
         };
-        let (least, most) = ((f64::NEG_INFINITY, true), (f64::INFINITY, true));
-        let (from, to) = match comparison {
-            Comparison::Less => (least, (limit, false)),
-            Comparison::LessOrEqual => (least, (limit, true)),
-            Comparison::Greater => ((limit, false), most),
-            Comparison::GreaterOrEqual => ((limit, true), most),
-            Comparison::Equal => ((limit, true), (limit, true)),
-            Comparison::Unequal => return None,
-        };
-        Some(Self { fact, from, to })
+        Some(Self { fact, range: AskedRange::of(comparison, limit)? })
     }
 
     /// Whether nothing can be as both ask.
     fn excludes(&self, other: &Self) -> bool {
-        let beyond = |low: (f64, bool), high: (f64, bool)| low.0 > high.0 || low.0 == high.0 && !(low.1 && high.1);
-        self.fact == other.fact && (beyond(self.from, other.to) || beyond(other.from, self.to))
+        self.fact == other.fact && self.range.excludes(&other.range)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Errors while a script ran in plain words, in the user's own line.
 
-use super::explain::{limit, mistake, offset, plain_kind, unknown_fact, unknown_name};
-use super::fact_table::names_in;
+use super::explain::{BEAMS, limit, mistake, offset, plain_kind, unknown_fact, unknown_name};
+use super::fact_table::{is_group, names_in};
 use super::functions::FUNCTIONS;
 use super::stopped::stopped;
 use crate::diagnostic::{Diagnostic, SourceText, printable};
@@ -42,7 +42,14 @@ pub(crate) fn explain(source: &SourceText, error: &EvalAltResult) -> Diagnostic 
         }
         E::ErrorIndexingType(kind, position) => {
             let kind = kind.split(' ').next().unwrap_or_default();
-            at("E-SCRIPT-FACT", position, format!("{} cannot be read with [ ]", plain_kind(kind)))
+            let wrong = at("E-SCRIPT-FACT", position, format!("{} cannot be read with [ ]", plain_kind(kind)));
+            match kind {
+                "laser" => wrong.help(BEAMS),
+                group if is_group(group) => {
+                    wrong.help(format!("its facts have names: write a dot and one of them after {group}"))
+                }
+                _ => wrong,
+            }
         }
         E::ErrorFor(position) => {
             at("E-SCRIPT-NAME", position, "a loop needs a range or an array: for i in 0..9".to_owned())

@@ -42,6 +42,7 @@ mod combined;
 mod memory;
 mod mirror;
 mod policy;
+mod policy_digest;
 mod q_table;
 mod replay;
 mod sarsa_lambda;

@@ -101,7 +101,8 @@ impl Robot for SimulatedRobot {
         let moving = in_view(&here.world, &mut here.own);
         let image = Some(&mut observation.image).filter(|image| image.width_px > 0);
         here.camera.render_both(&world_from_robot, moving, image, observation.depth.as_mut());
-        if let Some(watch) = &mut self.watch {
+        // Who does not look asks for no image.
+        if let Some(watch) = self.watch.as_mut().filter(|_| !observation.sight().pixels.is_empty()) {
             watch.check(observation.sight(), self.moved)?;
         }
         here.laser.scan(&world_from_robot, here.world.seen_by(0), &mut observation.scan);

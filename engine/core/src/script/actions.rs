@@ -10,23 +10,21 @@ use std::ops::Range;
 /// How actions are written.
 pub(super) const FORM: &str = "actions([[0.4, 0.2], [0.4, 0.0]]); with forward speed in m/s and turning speed in rad/s";
 
-/// What `actions(...)` lists.
+/// What `actions(...)` lists: nothing in the place of what is no pair of numbers.
 ///
 /// # Errors
-/// What is wrong with it, in words.
-pub(super) fn listed(actions: Dynamic) -> Result<Vec<Twist>, String> {
+/// If there are none or too many, in words.
+pub(super) fn listed(actions: Dynamic) -> Result<Vec<Option<Twist>>, String> {
     let list = actions.into_array().unwrap_or_default();
     if list.is_empty() || list.len() > MAX_ACTIONS {
         return Err(format!("there must be 1 to {MAX_ACTIONS} actions, found {}", list.len()));
     }
-    let pairs = list.into_iter().enumerate().map(|(index, action)| {
-        let pair = action.into_array().unwrap_or_default();
-        match pair.iter().map(number).collect::<Vec<_>>()[..] {
-            [Some(linear), Some(angular)] => Ok(Twist::new(linear, angular)),
-            _ => Err(format!("action {index} is not a pair of numbers")),
-        }
-    });
-    pairs.collect()
+    let pair = |action: Dynamic| match action.into_array().unwrap_or_default().iter().map(number).collect::<Vec<_>>()[..]
+    {
+        [Some(linear), Some(angular)] => Some(Twist::new(linear, angular)),
+        _ => None,
+    };
+    Ok(list.into_iter().map(pair).collect())
 }
 
 /// The actions that the drive cannot do, each by its number with why and what to write.

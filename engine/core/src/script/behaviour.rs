@@ -14,7 +14,7 @@ use crate::judge::uses::CompiledUse;
 use crate::judge::{FactId, Judge, RuleText, reach};
 use crate::outcome::Then;
 use crate::settings::{Edition, LaserSettings, RunSettings, ScanFan, Settings};
-use crate::verdict::{Endable, Success, SuccessCondition};
+use crate::verdict::{Endable, OwnWord, Success, SuccessCondition};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -74,8 +74,8 @@ impl Behaviour {
         }
     }
 
-    pub(super) fn with_success(self, success: Vec<SuccessCondition>) -> Self {
-        Self { success, ..self }
+    pub(super) fn with_success(self, success: Vec<SuccessCondition>, own: OwnWord) -> Self {
+        Self { success, endable: Endable { own, ..self.endable }, ..self }
     }
 
     pub(super) fn with_body(self, body: Option<SourceText>) -> Self {

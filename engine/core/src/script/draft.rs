@@ -28,7 +28,7 @@ use crate::judge::rule::CompiledRule;
 use crate::judge::sandbox;
 use crate::judge::views::register_own;
 use crate::settings::{Edition, PolicySettings, Settings};
-use crate::verdict::SuccessCondition;
+use crate::verdict::{OwnWord, SuccessCondition};
 use rhai::{AST, Engine, Module, Scope};
 use std::path::Path;
 
@@ -134,9 +134,9 @@ impl Draft {
         engine.register_global_module(constants_module(&constants).into());
         let policies = (!unread.any_of("policy")).then_some(settings.policies.as_slice());
         let read = ReadScript { code, tree, engine, constants, settings: &settings, policies, needs, bins };
-        let (compiled, outline, success) = read.compile(&mut spoilt, mistakes)?;
+        let (compiled, outline, (success, own)) = read.compile(&mut spoilt, mistakes)?;
         let behaviour = Behaviour::new(name, settings, places, outline, compiled);
-        let behaviour = behaviour.with_success(success).with_body(body).with_params(params).of_edition(edition);
+        let behaviour = behaviour.with_success(success, own).with_body(body).with_params(params).of_edition(edition);
         check_with_settings(&behaviour, &mut spoilt, &unread, mistakes)?;
         Ok((behaviour, unread))
     }
@@ -155,13 +155,16 @@ struct ReadScript<'a> {
     bins: Vec<WrittenBins>,
 }
 
+/// Its conditions of success, and which figures are its own word.
+type OwnSuccess = (Vec<SuccessCondition>, OwnWord);
+
 impl ReadScript<'_> {
     /// Measures, rules, success and functions, in this order: each may name what stands before it.
     fn compile(
         self,
         spoilt: &mut Spoilt<'_>,
         mistakes: &mut Mistakes,
-    ) -> std::result::Result<(CompiledScript, ScriptOutline, Vec<SuccessCondition>), Diagnostic> {
+    ) -> std::result::Result<(CompiledScript, ScriptOutline, OwnSuccess), Diagnostic> {
         let Self { code, tree, mut engine, constants, settings, policies, mut needs, bins } = self;
         let mut script = vocabulary(code, &tree, settings);
         check_stages(code, &needs, &script.stages, mistakes);
@@ -174,7 +177,8 @@ impl ReadScript<'_> {
         let written_uses = uses::count(&tree.ast, Forms::of(code));
         let uses = uses::uses(code, &tree.ast, policies, &mut compiler, spoilt, mistakes);
         let names = figure_names(code, &tree, settings, &rules);
-        let success = success::conditions(code, &tree.ast, &constants, &names, spoilt, mistakes);
+        let own_word = names.own_word;
+        let success = (success::conditions(code, &tree.ast, &constants, &names, spoilt, mistakes), own_word);
         let function = |name| if has_function(&tree.ast, name) { code.function(name) } else { None };
         let (reward, calibrate) = (function("reward"), function("calibrate"));
         let mut compiler = Compiler { constants: &constants, needs: &mut needs, script: &mut script };
@@ -330,11 +334,13 @@ fn vocabulary(code: &Code, tree: &Tree, settings: &Settings) -> Vocabulary {
 /// What figures of a test may be asked for by name.
 fn figure_names<'a>(code: &Code, tree: &'a Tree, settings: &'a Settings, rules: &'a [CompiledRule]) -> FigureNames<'a> {
     let reward_name = has_function(&tree.ast, "reward").then_some("reward");
+    let own_doing = OwnDoing::of(tree.ast.statements(), &|name| code.views.group_of(name).is_some());
     FigureNames {
+        own_word: own_doing.word(rules, reward_name.is_some()),
         rules: rules.iter().map(|rule| rule.text.name.as_str()).chain(reward_name).collect(),
         stages: settings.stages.iter().map(String::as_str).collect(),
         measures: tree.known.measures.iter().map(String::as_str).collect(),
-        own_doing: OwnDoing::of(tree.ast.statements(), &|name| code.views.group_of(name).is_some()),
+        own_doing,
     }
 }
 

@@ -283,7 +283,8 @@ impl Names<'_> {
         if SETUP.iter().any(|row| row.name == name) && receiver == 0 && !is_own {
             if self.in_function || in_rule {
                 let message = format!("'{name}' sets up: it cannot be used here");
-                self.mistake("E-SCRIPT-SETTING", position, message, "too late", "move it to the top of the script");
+                let help = if name == "laser" { explain::BEAMS } else { "move it to the top of the script" };
+                self.mistake("E-SCRIPT-SETTING", position, message, "too late", help);
             }
             return;
         }

@@ -4,17 +4,32 @@ use super::actions;
 use super::named_body::{BodyFiles, named_body};
 use super::setup::SetupReader;
 use crate::diagnostic::{Diagnostic, Result};
+use crate::geometry::Twist;
 use crate::judge::explain;
 use crate::settings::Settings;
 use rhai::Dynamic;
 
 impl SetupReader<'_> {
     pub(super) fn actions(&mut self, actions: Dynamic) -> Result<()> {
-        match actions::listed(actions) {
-            Ok(twists) => self.settings.actions = twists,
+        let pairs = match actions::listed(actions) {
+            Ok(pairs) => pairs,
             Err(message) => return self.wrong(self.call, message, "set here", actions::FORM),
+        };
+        self.mark("actions".to_owned(), self.call)?;
+        let start = self.places.get("actions").map_or(0, |call| call.start);
+        for (index, _) in pairs.iter().enumerate().filter(|(_, pair)| pair.is_none()) {
+            let message = format!("action {index} is not a pair of numbers");
+            let mut wrong =
+                explain::mistake(&self.code.source, "E-SCRIPT-SETTING", self.call, message, "not two numbers");
+            if let (Some(place), Some(span)) = (&mut wrong.place, actions::place(self.code, start, index)) {
+                place.span = span;
+            }
+            self.mistakes.add(wrong.help(format!("write {}", actions::FORM)));
+            self.unread.all_of("actions");
         }
-        self.mark("actions".to_owned(), self.call)
+        // What is none stands still, which every robot can do, so that the others keep their numbers.
+        self.settings.actions = pairs.into_iter().map(|pair| pair.unwrap_or(Twist::new(0.0, 0.0))).collect();
+        Ok(())
     }
 
     /// The defaults of the body that is named.

@@ -146,26 +146,38 @@ impl SetupReader<'_> {
     /// `state(part, ...)`.
     pub(super) fn state(&mut self, parts: impl Iterator<Item = Dynamic>) -> Result<()> {
         self.mark("state".to_owned(), self.call)?;
+        let (mut found, mut all_read) = (0, true);
         for part in parts {
-            if part.is_string() {
-                self.part_of_view(part.into_string().unwrap_or_default())?;
-            } else if let Some(token) = part.try_cast::<BinsToken>() {
-                let bins = WrittenBins::new(self.code, self.ast, &token)?;
-                let (of, edges) = (bins.text.clone(), bins.edges.clone());
-                self.settings.state.push(PartSettings::Bins { of, edges });
-                self.bins.push(bins);
-            } else {
-                let message = "a part of a state is the name of a view, or bins".to_owned();
-                return self.wrong(self.call, message, "found something else", STATE_FORM);
+            found += 1;
+            if let Err(wrong) = self.part(part) {
+                self.mistakes.add(*wrong);
+                self.unread.all_of("state");
+                all_read = false;
             }
         }
-        match self.settings.state.len() {
+        match found {
+            _ if !all_read => Ok(()),
             1..=MAX_PARTS => Ok(()),
             found => {
                 let message = format!("a state has 1 to {MAX_PARTS} parts, found {found}");
                 self.wrong(self.call, message, "set here", STATE_FORM)
             }
         }
+    }
+
+    fn part(&mut self, part: Dynamic) -> Result<()> {
+        if part.is_string() {
+            return self.part_of_view(part.into_string().unwrap_or_default());
+        }
+        let Some(token) = part.try_cast::<BinsToken>() else {
+            let message = "a part of a state is the name of a view, or bins".to_owned();
+            return self.wrong(self.call, message, "found something else", STATE_FORM);
+        };
+        let bins = WrittenBins::new(self.code, self.ast, &token)?;
+        let (of, edges) = (bins.text.clone(), bins.edges.clone());
+        self.settings.state.push(PartSettings::Bins { of, edges });
+        self.bins.push(bins);
+        Ok(())
     }
 
     fn part_of_view(&mut self, name: String) -> Result<()> {

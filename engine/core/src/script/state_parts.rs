@@ -73,12 +73,14 @@ impl WrittenBins {
     /// # Errors
     /// If they are something else.
     pub(super) fn new(code: &Code, ast: &AST, token: &BinsToken) -> Result<Self> {
+        let (mut text, mut at) = (String::new(), token.position);
+        with_value(ast, token.position, |value| {
+            code.source.text[span(code, value)].clone_into(&mut text);
+            at = first(value);
+        });
         let wrong = |message: String, label: String| {
-            let at = explain::mistake(&code.source, "E-SCRIPT-SETTING", token.position, message, label);
-            at.help(FORM).fail()
+            explain::mistake(&code.source, "E-SCRIPT-SETTING", at, message, label).help(FORM).fail()
         };
-        let mut text = String::new();
-        with_value(ast, token.position, |value| code.source.text[span(code, value)].clone_into(&mut text));
         let Some(edges) = &token.edges else { return Ok(Self { position: token.position, text, edges: Vec::new() }) };
         let list = edges.clone().into_array().unwrap_or_default();
         let edges: Vec<f64> = list.iter().filter_map(number).filter(|edge| edge.is_finite()).collect();

@@ -11,8 +11,12 @@ use crate::judge::explain::mistake;
 use crate::judge::expression::{Arithmetic, Comparison};
 use crate::judge::fact_table::is_group;
 use crate::judge::functions::{OF_ONE, OF_ONE_FRACTION, OF_TWO, OF_TWO_FRACTION};
-use crate::verdict::{FIGURES, FigureOf, FigureUse, Request, Subject, SuccessCondition, Takes, Term, TestFigure};
+use crate::verdict::{
+    FIGURES, FigureOf, FigureUse, OwnWord, Request, Subject, SuccessCondition, Takes, Term, TestFigure, exclude,
+    why_never,
+};
 use rhai::{AST, Expr, FnCallExpr, Position, Scope};
+use std::ops::Range;
 
 const CODE: &str = "E-SCRIPT-SUCCESS";
 
@@ -27,6 +31,8 @@ pub(super) struct FigureNames<'a> {
     pub measures: Vec<&'a str>,
     /// Of rules and measures those that tell only what the robot itself does.
     pub own_doing: OwnDoing<'a>,
+    /// What such rules alone bring about.
+    pub own_word: OwnWord,
 }
 
 impl FigureNames<'_> {
@@ -36,7 +42,7 @@ impl FigureNames<'_> {
         match of {
             FigureOf::Rule(index) => own(&self.rules, *index, &self.own_doing.rules),
             FigureOf::Measure(index) => own(&self.measures, *index, &self.own_doing.measures),
-            _ => figure.name == "reward_per_1000",
+            _ => self.own_word.has(figure),
         }
     }
 }
@@ -74,6 +80,10 @@ pub(super) fn conditions(
         }
         match compiler.condition(written) {
             Ok(term) if mistakes.count() == count => {
+                if let Some(never) = never(code, name, (&term, bytes.clone()), &conditions) {
+                    mistakes.add(never);
+                    continue;
+                }
                 let text = code.source.text[bytes.clone()].split_whitespace().collect::<Vec<_>>().join(" ");
                 conditions.push(SuccessCondition { name: name.to_owned(), text, span: Some(bytes), term });
             }
@@ -85,6 +95,25 @@ pub(super) fn conditions(
         }
     }
     conditions
+}
+
+/// Why no test meets a condition, by itself or beside those before it; nothing if one may.
+fn never(
+    code: &Code,
+    name: &str,
+    (term, bytes): (&Term, Range<usize>),
+    before: &[SuccessCondition],
+) -> Option<Diagnostic> {
+    let wrong = |message: String, label: String| Diagnostic::new(CODE, message).at(&code.source, bytes.clone(), label);
+    let shown = printable(name);
+    if let Some(why) = why_never(term) {
+        let help = "every condition must hold at once; write || where either will do, or turn the comparison";
+        return Some(wrong(format!("success \"{shown}\" can never hold"), why).help(help));
+    }
+    let other = printable(&before.iter().find(|other| exclude(&other.term, term))?.name);
+    let message = format!("success \"{shown}\" and success \"{other}\" can never hold together");
+    let label = format!("this excludes \"{other}\"");
+    Some(wrong(message, label).help("every condition must hold at once: join the two by || if either will do"))
 }
 
 /// A term with its kind.

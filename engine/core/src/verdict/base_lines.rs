@@ -12,6 +12,9 @@ pub struct BaseLines {
     /// Of some robots that do not look the best one; absent where the test is no success without asking them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub blind: Option<BlindFigures>,
+    /// Other robots that know nothing; absent unless rewards are asked for beside other figures, and all would be well.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub untrained_others: Vec<TestFigures>,
 }
 
 /// The test of a robot that does not look: what it does depends on no state.
@@ -27,6 +30,6 @@ impl BaseLines {
     /// Only a robot that knows nothing.
     #[must_use]
     pub fn of_untrained(untrained: TestFigures) -> Self {
-        Self { untrained, blind: None }
+        Self { untrained, blind: None, untrained_others: Vec::new() }
     }
 }

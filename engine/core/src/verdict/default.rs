@@ -1,6 +1,7 @@
 //! What is called success where a script does not say it.
 
 use super::figures::TestFigure;
+use super::own_word::OwnWord;
 use super::success::SuccessCondition;
 use super::term::{FigureOf, FigureUse, Subject, Term};
 use crate::judge::expression::{Arithmetic, Comparison};
@@ -14,6 +15,8 @@ pub(crate) struct Endable {
     pub contact_pays: bool,
     /// Whether there are stages.
     pub stages: bool,
+    /// Which figures are the script's own word.
+    pub own: OwnWord,
 }
 
 /// At most so many failures in 1,000 steps.
@@ -44,7 +47,7 @@ pub(crate) fn default_conditions(endable: Endable, has_route: bool, seconds: f64
         let figure = TestFigure::of(name);
         let of = FigureOf::Whole;
         figure.map_or(Term::Constant(f64::NAN), |figure| {
-            Term::TestFigure(FigureUse { subject, figure, of, of_reward: false })
+            Term::TestFigure(FigureUse { subject, figure, of, of_reward: endable.own.has(figure) })
         })
     };
     let compare = |comparison, a, b| Term::Compare(comparison, Box::new([a, b]));

@@ -12,6 +12,8 @@ mod default;
 mod figures;
 mod judged;
 mod measured;
+mod own_word;
+mod possible;
 mod success;
 mod term;
 mod totals;
@@ -29,4 +31,6 @@ pub use window::{WINDOW_STEPS, Window, WindowCounts};
 
 pub(crate) use default::Endable;
 pub(crate) use figures::Takes;
+pub(crate) use own_word::OwnWord;
+pub(crate) use possible::{exclude, why_never};
 pub(crate) use term::{FigureOf, FigureUse, Term};

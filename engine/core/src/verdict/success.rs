@@ -41,6 +41,11 @@ impl SuccessCondition {
         Self { name: name.to_owned(), text: text.to_owned(), span: None, term }
     }
 
+    /// Whether it reads rewards, or what else is the script's own word.
+    fn reads_rewards(&self) -> bool {
+        self.term.figures().iter().any(|asked| asked.of_reward)
+    }
+
     /// Whether it reads nothing but rewards.
     fn reads_only_rewards(&self) -> bool {
         self.term.figures().iter().all(|asked| asked.of_reward)
@@ -119,7 +124,7 @@ impl Success {
             Because::TooFew
         } else if conditions.iter().all(|condition| condition.untrained) {
             Because::UntrainedToo
-        } else if self.tells_only_rewards(test, untrained) {
+        } else if self.tells_only_rewards(test, lines) {
             Because::RewardOnly
         } else if !self.looks || blind.is_some_and(|blind| self.is_met_by(blind, untrained)) {
             Because::BlindToo
@@ -162,10 +167,21 @@ impl Success {
     }
 
     /// Whether all conditions hold as well if nothing but the figures of the reward is the test's, and every other one that of a
-    /// robot that knows nothing: then these tell nothing.
-    fn tells_only_rewards(&self, test: &TestFigures, untrained: &TestFigures) -> bool {
-        let (own, chance) = (self.of(test, untrained), self.of(untrained, untrained));
-        self.conditions.iter().all(|condition| condition.term.holds_by_rewards(own, chance))
+    /// robot that knows nothing: then these tell nothing. No two such robots do the same, so that it is asked of more than one:
+    /// `test.distance_m != untrained.distance_m` holds of whatever moves.
+    fn tells_only_rewards(&self, test: &TestFigures, lines: &BaseLines) -> bool {
+        let own = self.of(test, &lines.untrained);
+        let whole = lines.untrained_others.iter().filter(|other| other.steps == test.steps);
+        std::iter::once(&lines.untrained).chain(whole).any(|chance| {
+            let chance = self.of(chance, &lines.untrained);
+            self.conditions.iter().all(|condition| condition.term.holds_by_rewards(own, chance))
+        })
+    }
+
+    /// Whether rewards are asked for: other robots that know nothing then tell whether the rest says anything.
+    #[must_use]
+    pub fn reads_rewards(&self) -> bool {
+        self.conditions.iter().any(SuccessCondition::reads_rewards)
     }
 
     fn of<'a>(&self, test: &'a TestFigures, untrained: &'a TestFigures) -> SideBySide<'a> {

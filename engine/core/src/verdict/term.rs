@@ -135,6 +135,12 @@ impl Term {
 }
 
 impl FigureUse {
+    /// Whether both ask for the same figure of the same side.
+    pub(super) fn is_same(&self, other: &Self) -> bool {
+        let of = |asked: &Self| (asked.subject, asked.figure.name, asked.of.number());
+        of(self) == of(other) && self.of.request() == other.of.request()
+    }
+
     /// Whether a test cannot have it, whatever the robot does.
     pub(super) fn is_unmeasured(&self, measured: SideBySide<'_>) -> bool {
         matches!(self.figure.source, Source::Spells(_)) && self.read(measured).is_none()

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::store::{RUN_FILE, SUMMARY_FILE, StoredRun, read_stored};
+use crate::store::{RUN_FILE, SUMMARY_FILE, StoredRun, check_policy, read_stored};
 use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::experiment::{Decider, Plan, Spread, Summary};
 use engine::filter::Catalogue;
@@ -40,6 +40,8 @@ impl Side {
         let seed_of = |folder: &Path, summary: Summary| {
             let StoredRun { plan, decider, .. } = StoredRun::load_with(folder, Arc::clone(filters))?;
             let policy = if let Decider::Learned(policy) = decider { Some(policy) } else { None };
+            // Of many seeds, the figures are those that stand above their folders.
+            policy.iter().try_for_each(|policy| check_policy(folder, summary.policy_sha256.as_deref(), policy))?;
             Ok::<_, Box<Diagnostic>>((plan, SideSeed { summary, policy }))
         };
         if let Ok(one) = serde_json::from_str::<Summary>(&summary.text) {

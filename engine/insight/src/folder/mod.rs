@@ -28,7 +28,7 @@ pub use drawn::Redrawn;
 pub use explained::{ExplainedStep, Side};
 pub use files::{CURVE_FILE, DISAGREEMENTS_FILE, create_folder, curve_of, disagreements_of, write_json};
 pub use removal::remove_run;
-pub use test_folder::TestFolder;
+pub use test_folder::{TEST_FILE, TestFolder};
 pub use unfinished::Unfinished;
 
 /// One seed's results.
@@ -63,6 +63,8 @@ pub struct RunFolder {
 pub enum IfTaken {
     /// That run is replaced.
     Replace,
+    /// It is replaced if it is an older one of the same script and the same seeds; else it stays, and nothing is written.
+    ReplaceOwn,
     /// It stays, and nothing is run.
     Refuse,
     /// It stays, and the new run goes to the next number: `1.2` beside `1`.
@@ -82,7 +84,7 @@ impl RunFolder {
         loop {
             let path = match if_taken {
                 IfTaken::Number => claim.numbered(path)?,
-                IfTaken::Replace | IfTaken::Refuse => path.to_owned(),
+                IfTaken::Replace | IfTaken::ReplaceOwn | IfTaken::Refuse => path.to_owned(),
             };
             let mut staged = Staged::beside(&path, retire)?;
             if if_taken == IfTaken::Replace {
@@ -91,16 +93,29 @@ impl RunFolder {
                 return unfinished(&path).fail();
             }
             // Another process may have been done since the number was found.
-            if if_taken != IfTaken::Replace && claim.is_denied(&path)? {
-                match if_taken {
-                    IfTaken::Number => continue,
-                    _ => return taken(&path).fail(),
-                }
+            let denied = match if_taken {
+                IfTaken::Replace => false,
+                IfTaken::ReplaceOwn => claim.is_of_others(&path)?,
+                IfTaken::Refuse | IfTaken::Number => claim.is_denied(&path)?,
+            };
+            if denied && if_taken == IfTaken::Number {
+                continue;
+            }
+            if denied {
+                return taken(&path).fail();
             }
             let work = staged.folder().to_owned();
             write_atomic(&work.join(RUN_FILE), run.as_bytes())?;
             return Ok(Self { path, staged: Some(staged), ..Self::elsewhere(&work, &work, seeds.len() > 1) });
         }
+    }
+
+    /// Where the run that stands in its place goes if it is another one and has a tag; nothing if none does.
+    ///
+    /// # Errors
+    /// If that cannot be told.
+    pub fn set_aside(&self) -> Result<Option<PathBuf>> {
+        removal::set_aside(&self.path, &self.work, &self.path)
     }
 
     /// Puts the folder into its place: until then whoever looks there finds what stood there before.

@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 use super::explained::ExplainedStep;
 use super::pages::PAGE_FILE;
 use super::pictures::PICTURES;
-use super::test_folder::TEST_FILE;
-use super::{CERTIFICATE_FILE, CURVE_FILE, DISAGREEMENTS_FILE, certificate::CERTIFICATE_PICTURE};
+use super::{CERTIFICATE_FILE, CURVE_FILE, DISAGREEMENTS_FILE, TEST_FILE, certificate::CERTIFICATE_PICTURE};
 use crate::disk::{Lock, RESUMABLE, is_there, is_unfinished};
 use crate::store::{CHECKPOINT_FILE, LOG_FILE, POLICY_FILE, RUN_FILE, STEPS_FILE, SUMMARY_FILE, TAG_FILE, read_stored};
 use engine::diagnostic::{Diagnostic, Result, SourceText, printable};
@@ -47,17 +46,22 @@ pub fn remove_run(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(kept)
 }
 
-/// Removes a folder in whose place another one stands now. Of a run or a test its tag, what was scored of it anew and what somebody
-/// else put there moves to the new one; of any other folder all does.
+/// Removes a folder in whose place another one stands now. Of a run or a test what somebody else put there moves to the new one; of
+/// any other folder all does. A run's tag and what was scored of it anew speak of its own steps: they move on if the same run was
+/// done again. A run with a tag that is another one is kept whole, see [`set_aside`].
 ///
 /// # Errors
 /// If something cannot be removed or moved.
 pub(super) fn retire(old: &Path, now: &Path) -> Result<()> {
     let (stays, mut kept) = (is_there(now)?, Vec::new());
+    if let Some(aside) = set_aside(old, now, now)? {
+        return std::fs::rename(old, &aside).map_err(|error| disk("move", old, &error));
+    }
     if is_there(&old.join(RUN_FILE))? || is_there(&old.join(TEST_FILE))? {
+        let again = stays && is_same_run(old, now);
         for path in entries(old)? {
             let name = name_of(&path);
-            if stays && (name == TAG_FILE || name.starts_with(RESCORE)) {
+            if again && (name == TAG_FILE || name.starts_with(RESCORE)) {
                 move_on(&path, old, now)?;
             }
         }
@@ -75,6 +79,30 @@ pub(super) fn retire(old: &Path, now: &Path) -> Result<()> {
         Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(disk("remove the old", old, &error)),
         _ => Ok(()),
     }
+}
+
+/// Whether two folders hold the same run, or none.
+fn is_same_run(one: &Path, other: &Path) -> bool {
+    let run = |folder: &Path| std::fs::read(folder.join(RUN_FILE)).ok();
+    run(one) == run(other)
+}
+
+/// Where a run goes that has a tag, so that somebody wants to find it again, once another one takes its place: beside it under the
+/// first number that is free, as in `1.2` beside `1`. Nothing if it has no tag, or the other one is the same run.
+///
+/// # Errors
+/// If that cannot be told.
+pub(super) fn set_aside(run: &Path, other: &Path, place: &Path) -> Result<Option<PathBuf>> {
+    let tagged = is_there(&run.join(RUN_FILE))? && is_there(&run.join(TAG_FILE))?;
+    if !tagged || is_same_run(run, other) {
+        return Ok(None);
+    }
+    let numbered = |number: u64| place.with_file_name(format!("{}.{number}", name_of(place)));
+    let mut number = 2;
+    while is_there(&numbered(number))? {
+        number += 1;
+    }
+    Ok(Some(numbered(number)))
 }
 
 /// Moves what stands in an old folder to the same place in the new one, under another name if there is such a file.
@@ -203,13 +231,39 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         let (old, now) = (place.path().join(".1.x.part"), place.path().join("1"));
         write(&old, &["run.toml", "log.bin", "test.json", ".log.bin.x.part", "7/run.toml"]);
-        write(&old, &["notes.md", "7/mine.txt", "tag.txt", "rescore-a/rescore.json"]);
+        write(&old, &["notes.md", "7/mine.txt", "rescore-a/rescore.json", "rescore-a/thesis.tex"]);
         write(&now, &["run.toml"]);
         retire(&old, &now).unwrap();
-        for moved in ["notes.md", "7/mine.txt", "tag.txt", "rescore-a/rescore.json"] {
+        for moved in ["notes.md", "7/mine.txt", "rescore-a/thesis.tex"] {
             assert!(now.join(moved).exists(), "{moved}");
         }
         assert!(!old.exists() && !now.join("log.bin").exists());
+        // It is of steps that are not there any more.
+        assert!(!now.join("rescore-a/rescore.json").exists());
+    }
+
+    #[test]
+    fn tag_and_rescorings_stay_with_a_run_that_is_done_again_and_a_tagged_run_makes_room_for_another() {
+        let place = tempfile::tempdir().unwrap();
+        let (old, now) = (place.path().join(".1.x.part"), place.path().join("1"));
+        write(&old, &["log.bin", "tag.txt", "rescore-a/rescore.json"]);
+        write(&now, &["log.bin"]);
+        for folder in [&old, &now] {
+            std::fs::write(folder.join("run.toml"), "seed = 1\n").unwrap();
+        }
+        retire(&old, &now).unwrap();
+        assert!(now.join("tag.txt").exists() && now.join("rescore-a/rescore.json").exists() && !old.exists());
+
+        write(&place.path().join("1.2"), &["mine"]);
+        std::fs::rename(&now, &old).unwrap();
+        write(&now, &["run.toml", "log.bin"]);
+        assert_eq!(set_aside(&old, &now, &now).unwrap(), Some(place.path().join("1.3")));
+        retire(&old, &now).unwrap();
+        let kept = place.path().join("1.3");
+        for file in ["run.toml", "log.bin", "tag.txt", "rescore-a/rescore.json"] {
+            assert!(kept.join(file).exists(), "{file}");
+        }
+        assert!(!now.join("tag.txt").exists() && !now.join("rescore-a").exists() && !old.exists());
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::disk::{is_there, read_file};
-use crate::store::{LOG_FILE, RUN_FILE, seed_folders};
+use crate::store::{LOG_FILE, RUN_FILE, script_of, seed_folders};
 use engine::diagnostic::{Diagnostic, Result, printable};
 
 /// The longest `run.toml` that is compared, bytes.
@@ -35,6 +35,21 @@ impl Claim<'_> {
             || read_file(&path, MOST_RUN_BYTES).map_or(true, |old| old != self.run.as_bytes()))
     }
 
+    /// Whether a folder holds a run of another script, or of other seeds; not if only what the script says has changed since.
+    ///
+    /// # Errors
+    /// If that cannot be told.
+    pub(super) fn is_of_others(self, folder: &Path) -> Result<bool> {
+        if !is_there(&folder.join(RUN_FILE))? {
+            return Ok(!seed_folders(folder).is_empty());
+        }
+        let others = seed_folders(folder).into_iter().any(|(seed, _)| !self.seeds.contains(&seed));
+        let one = is_there(&folder.join(LOG_FILE))?;
+        let old = read_file(&folder.join(RUN_FILE), MOST_RUN_BYTES).ok().and_then(|old| String::from_utf8(old).ok());
+        let script = |run: &str| script_of(run).map(|(behaviour, seed, path)| (behaviour, seed, whole(&path)));
+        Ok(one == self.is_many() || others || old.is_none_or(|old| script(&old) != script(self.run)))
+    }
+
     fn is_many(self) -> bool {
         self.seeds.len() > 1
     }
@@ -52,6 +67,11 @@ impl Claim<'_> {
         }
         Ok(path)
     }
+}
+
+/// A path that means the same file however it is written, if the file is still there.
+fn whole(path: &str) -> PathBuf {
+    Path::new(path).canonicalize().unwrap_or_else(|_| PathBuf::from(path))
 }
 
 pub(super) fn taken(folder: &Path) -> Diagnostic {
@@ -85,6 +105,25 @@ mod tests {
         assert_eq!((numbered("a"), numbered("b")), (folder.clone(), place.path().join("1.2")));
         write("1.2", "b");
         assert_eq!((numbered("b"), numbered("c")), (place.path().join("1.2"), place.path().join("1.3")));
+    }
+
+    #[test]
+    fn a_script_that_was_changed_since_replaces_its_own_run_and_no_other_one() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = place.path();
+        let run = |behaviour: &str, seed: u64, path: &str, text: &str| {
+            format!("behaviour = \"{behaviour}\"\nseed = {seed}\n[script]\npath = \"{path}\"\ntext = \"{text}\"\n")
+        };
+        std::fs::write(folder.join(RUN_FILE), run("wall", 1, "s/wall.rhai", "old")).unwrap();
+        std::fs::write(folder.join(LOG_FILE), "").unwrap();
+        let denied = |run: &str, seeds: &[u64]| Claim { run, seeds }.is_of_others(folder).unwrap();
+        assert!(!denied(&run("wall", 1, "s/wall.rhai", "new"), &[1]));
+        assert!(denied(&run("wall", 1, "t/wall.rhai", "old"), &[1]));
+        assert!(denied(&run("line", 1, "s/line.rhai", "new"), &[1]));
+        assert!(denied(&run("wall", 2, "s/wall.rhai", "new"), &[2]));
+        assert!(denied(&run("wall", 1, "s/wall.rhai", "new"), &[1, 2]));
+        std::fs::write(folder.join(RUN_FILE), "not a run").unwrap();
+        assert!(denied(&run("wall", 1, "s/wall.rhai", "new"), &[1]));
     }
 
     #[test]

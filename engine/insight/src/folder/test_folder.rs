@@ -11,7 +11,8 @@ use crate::store::RUN_FILE;
 use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::experiment::{CertaintyGrid, Plan, TestRun};
 
-pub(super) const TEST_FILE: &str = "test.json";
+/// The file of a test's figures.
+pub const TEST_FILE: &str = "test.json";
 
 /// A folder for a test, complete or absent.
 pub struct TestFolder {

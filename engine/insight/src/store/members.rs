@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::parts::RUN_FILE;
+use super::parts::{RUN_FILE, check_policy_of_file};
 use super::policy_file::StoredPolicy;
 use super::{read_stored, used};
 use engine::diagnostic::{Diagnostic, Result, SourceText, printable};
@@ -158,7 +158,17 @@ fn find(
     };
     let beside = found.with_file_name(RUN_FILE);
     let run = (plan.behaviour.hands_over() && beside.is_file()).then(|| read(&beside)).transpose()?;
-    Ok(PolicyText { policy: read(found)?, run })
+    let policy = read(found)?;
+    // What is wrong with the file itself is told by whoever reads it.
+    if let Ok(stored) = StoredPolicy::parse(&policy) {
+        check_policy_of_file(found, &stored.policy).map_err(|error| {
+            let help = error.help.unwrap_or_default();
+            let mut placed = wrong(plan, index, error.message, "this policy", &help);
+            placed.code = error.code;
+            placed
+        })?;
+    }
+    Ok(PolicyText { policy, run })
 }
 
 /// The command that makes a missing policy, as far as its path tells.

@@ -14,8 +14,8 @@ pub use checkpoint::{CHECKPOINT_FILE, CheckpointWriter, STEPS_FILE, StoredCheckp
 pub use going_on::going_on_from;
 pub use log::{LOG_FILE, MAGIC, RecordedRun, log_to_bytes, read_log};
 pub use members::{PolicyText, policy_files, with_policies, with_policies_or, with_policy_texts};
-pub(crate) use parts::TAG_FILE;
 pub use parts::{RUN_FILE, SUMMARY_FILE, seed_folders};
+pub(crate) use parts::{TAG_FILE, check_policy, script_of};
 pub use policy_file::{POLICY_FILE, StoredPolicy, policy_from_toml, policy_to_toml};
 pub use run_file::{StoredRun, plan_of_run, run_to_toml};
 

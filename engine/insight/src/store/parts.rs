@@ -7,11 +7,13 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use super::log::{LOG_FILE, log_names};
+use super::policy_file::POLICY_FILE;
 use super::read_stored;
 use crate::disk::is_there;
 use engine::diagnostic::{Diagnostic, Result, SourceText, printable};
 use engine::digest::{Digest, hex};
-use engine::experiment::DIGEST_BYTES;
+use engine::experiment::{DIGEST_BYTES, Decider};
+use engine::learner::Policy;
 
 /// The name of the file that all others of a run's folder name.
 pub const RUN_FILE: &str = "run.toml";
@@ -29,38 +31,92 @@ pub fn seed_folders(folder: &Path) -> Vec<(u64, PathBuf)> {
     seeds
 }
 
+/// Of the text of a `run.toml`: the behaviour, the seed and the path of its script; nothing if it is none.
+pub(crate) fn script_of(run: &str) -> Option<(String, u64, String)> {
+    #[derive(Deserialize)]
+    struct Named {
+        behaviour: String,
+        seed: u64,
+        script: PathEntry,
+    }
+    #[derive(Deserialize)]
+    struct PathEntry {
+        path: String,
+    }
+    let Named { behaviour, seed, script } = toml::from_str(run).ok()?;
+    Some((behaviour, seed, script.path))
+}
+
 /// The file that holds a run's tag.
 pub(crate) const TAG_FILE: &str = "tag.txt";
 
 /// The longest part of a log that is read to find out its run, bytes: prefix and header.
 const MOST_HEADER_BYTES: u64 = 16 << 20;
 
-/// The run that a summary names.
-#[derive(Deserialize)]
-struct NamedLog {
+/// What a summary names of the files beside it; older ones name less.
+#[derive(Deserialize, Default)]
+struct NamedParts {
     log_sha256: Option<String>,
+    policy_sha256: Option<String>,
 }
 
-/// Checks that `log.bin` and `summary.json`, where they are there, belong to the run of this `run.toml`.
+impl NamedParts {
+    /// Of the summary in a folder; nothing is named where there is none, or none that can be read.
+    fn in_folder(folder: &Path) -> Result<Self> {
+        let path = folder.join(SUMMARY_FILE);
+        if !is_there(&path)? {
+            return Ok(Self::default());
+        }
+        Ok(serde_json::from_str(&read_stored(&path)?.text).unwrap_or_default())
+    }
+}
+
+/// Checks that `log.bin` and `summary.json`, where they are there, belong to the run of this `run.toml`, and what it decides by
+/// to the summary.
 ///
 /// # Errors
 /// `E-LOG-RUN` if one belongs to another run.
-pub(super) fn check_parts(folder: &Path, run: &SourceText) -> Result<()> {
-    let path = folder.join(LOG_FILE);
-    let Some((log_run, log_end)) = of_log(&path) else { return Ok(()) };
-    if log_run != Digest::of(run.text.as_bytes()).to_string() {
-        return other(&path, &run.path).fail();
+pub(super) fn check_parts(folder: &Path, run: &SourceText, decider: &Decider) -> Result<()> {
+    let (path, named) = (folder.join(LOG_FILE), NamedParts::in_folder(folder)?);
+    if let Some((log_run, log_end)) = of_log(&path) {
+        if log_run != Digest::of(run.text.as_bytes()).to_string() {
+            return other(&path, &run.path).fail();
+        }
+        if named.log_sha256.is_some_and(|named| named != log_end) {
+            return other(&folder.join(SUMMARY_FILE), &path).fail();
+        }
     }
-    let path = folder.join(SUMMARY_FILE);
-    if !is_there(&path)? {
-        return Ok(());
+    match decider {
+        Decider::Learned(policy) => check_policy(folder, named.policy_sha256.as_deref(), policy),
+        Decider::Combined => Ok(()),
     }
-    let text = read_stored(&path)?;
-    let named = serde_json::from_str(&text.text).ok().and_then(|NamedLog { log_sha256 }| log_sha256);
-    match named {
-        Some(named) if named != log_end => other(&path, &folder.join(LOG_FILE)).fail(),
-        _ => Ok(()),
-    }
+}
+
+/// Checks that a policy from a folder has the values by whose digest a summary names it; one that names none fits all.
+///
+/// # Errors
+/// `E-LOG-RUN` if it has others: those of another seed or run, or somebody changed them.
+pub(crate) fn check_policy(folder: &Path, named: Option<&str>, policy: &Policy) -> Result<()> {
+    let fits = named.is_none_or(|named| policy.digest().to_string() == named);
+    if fits { Ok(()) } else { other_values(folder).fail() }
+}
+
+/// Checks the same of a policy that is named by its file, by the summary that stands beside it.
+///
+/// # Errors
+/// `E-LOG-RUN` likewise.
+pub(super) fn check_policy_of_file(file: &Path, policy: &Policy) -> Result<()> {
+    let folder = file.parent().unwrap_or(Path::new(""));
+    check_policy(folder, NamedParts::in_folder(folder)?.policy_sha256.as_deref(), policy)
+}
+
+fn other_values(folder: &Path) -> Diagnostic {
+    let shown = |file: &str| printable(&folder.join(file).display().to_string());
+    let message = format!("'{}' does not hold what '{}' was written for", shown(POLICY_FILE), shown(SUMMARY_FILE));
+    Diagnostic::new("E-LOG-RUN", message).help(
+        "it is of another seed or run, or was changed: put the run's own back, or run the behaviour again. A table of \
+         your own can be tested in a folder with run.toml and policy.toml alone",
+    )
 }
 
 /// Checks that a part that names a run names this one.

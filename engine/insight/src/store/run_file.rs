@@ -243,7 +243,7 @@ impl StoredRun {
     /// As [`StoredRun::load`], and if a filter is missing or another than it was.
     pub fn load_with(folder: &Path, filters: Arc<Catalogue>) -> Result<Self> {
         let (stored, source) = Self::read(folder, filters)?;
-        check_parts(folder, &source)?;
+        check_parts(folder, &source, &stored.decider)?;
         Ok(stored)
     }
 

@@ -41,6 +41,9 @@ pub(crate) struct WatchArguments {
     /// Write each finished run to this folder, as engine run does; with --keep it is runs/BEHAVIOUR/watch without this
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Replace whatever run stands in that folder; without this, only an older one of the same script and the same seeds
+    #[arg(long)]
+    pub(crate) force: bool,
     #[command(flatten)]
     pub(crate) changes: Changes,
     /// The port of the page; the next free one if it is taken, any for 0

@@ -11,11 +11,11 @@ use engine::sensors::observation::Image;
 use engine::sensors::{load_depth, load_photograph, photograph_files};
 use engine::settings::Settings;
 use engine::state::Grid;
-use insight::disk::write_atomic;
-use insight::folder::create_folder;
+use insight::disk::{is_there, write_atomic};
+use insight::folder::{TEST_FILE, create_folder};
 use insight::page::mask_png;
 use insight::report::{FrameData, FramePanel, Picture, frame};
-use insight::store::StoredRun;
+use insight::store::{RUN_FILE, StoredRun};
 use pack::Runnable;
 
 use super::behaviour::open_to_look;
@@ -72,6 +72,7 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
     let met = arguments.run.as_deref().map(|run| met(run, &plan)).transpose()?;
     let files = photograph_files(&arguments.image)?;
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(plan.behaviour.name()).join("filter"));
+    check_no_run(&out)?;
     create_folder(&out)?;
     keep_photographs(&files, &out)?;
     let (mut chain, mut grid) = (plan.chain()?, plan.grid()?);
@@ -248,6 +249,18 @@ fn keep_photographs(files: &[PathBuf], out: &Path) -> Result<()> {
     }
     let message = format!("the pictures could overwrite photographs in '{}'", printable(&out.display().to_string()));
     Diagnostic::new("E-OUT", message).help("choose another folder: --out DIR").fail()
+}
+
+/// A photograph may have the name of one of a run's pictures.
+fn check_no_run(out: &Path) -> Result<()> {
+    let shown = printable(&out.display().to_string());
+    if !is_there(&out.join(RUN_FILE))? && !is_there(&out.join(TEST_FILE))? {
+        return Ok(());
+    }
+    let message = format!("'{shown}' holds a run or a test, whose pictures these could replace");
+    Diagnostic::new("E-RUN-TAKEN", message)
+        .help(format!("choose a folder in it, or another one: --out {shown}/filter"))
+        .fail()
 }
 
 /// The photograph's name without its ending, with a number behind it where another one has it.

@@ -58,6 +58,9 @@ pub(crate) fn run(arguments: &RunArguments, console: &mut Console) -> std::resul
     folder.write(&plan, &results, checked.as_ref())?;
     let (stopped, written) = (stop.status(), folder.path().to_owned());
     let resumable = stopped.is_some() && folder.can_be_resumed();
+    if let Some(aside) = folder.set_aside()? {
+        console.note(&format!("the run that stands there has a tag: it is kept, in {}", aside.display()));
+    }
     match stopped {
         Some(_) => folder.commit()?,
         None => folder.commit_done(&seeds)?,

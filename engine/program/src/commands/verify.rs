@@ -24,7 +24,7 @@ use crate::console::{Console, ConsoleError};
 /// Figures of `summary.json` that are not the run's: how fast it was, and whether it was stopped.
 const OF_THE_MOMENT: [&str; 2] = ["steps_per_second", "interrupted"];
 /// Of a run that was stopped these were measured on fewer steps than were asked for.
-const OF_WHOLE_RUNS: [&str; 3] = ["verdict", "untrained", "blind"];
+const OF_WHOLE_RUNS: [&str; 4] = ["verdict", "untrained", "blind", "untrained_others"];
 
 #[derive(Serialize)]
 struct Verified {
@@ -240,15 +240,14 @@ fn compare_figures(folder: &Path, written: &Summary, again: &Summary, asked: u64
         old.as_object_mut().and_then(|all| all.remove(*figure));
         new.as_object_mut().and_then(|all| all.remove(*figure));
     }
-    // Older runs in several worlds did not tell them apart.
-    if old.get(BY_WORLD).is_none() {
-        new.as_object_mut().and_then(|all| all.remove(BY_WORLD));
+    for name in NOT_IN_OLDER.into_iter().filter(|name| old.get(name).is_none()) {
+        new.as_object_mut().and_then(|all| all.remove(name));
     }
     compare_values(folder, &old, &new)
 }
 
-/// The figures of each of several worlds.
-const BY_WORLD: &str = "worlds";
+/// Older runs did not tell several worlds apart, and did not name the table, which is compared itself.
+const NOT_IN_OLDER: [&str; 2] = ["worlds", "policy_sha256"];
 
 fn compare_values(folder: &Path, old: &Value, new: &Value) -> Result<()> {
     let name = folder.join(SUMMARY_FILE).display().to_string();

@@ -29,19 +29,24 @@ pub(crate) fn run(arguments: &WatchArguments, console: &mut Console) -> Result<u
     let overrides = Overrides { steps: arguments.steps, ..arguments.changes.overrides() };
     // What is wrong from the start is said here; what is saved wrong later, on the page.
     let sources = arguments.filters.clone();
-    engine::experiment::Plan::load(&arguments.behaviour, &overrides, || super::sources::catalogue(&sources))?;
+    let plan =
+        engine::experiment::Plan::load(&arguments.behaviour, &overrides, || super::sources::catalogue(&sources))?;
     let stop = super::stop::on_ctrl_c()?;
     let board = Arc::new(Board::default());
     let keep = keep(arguments.keep.as_deref());
     let name = arguments.behaviour.file_stem().unwrap_or_default();
     let kept = || std::path::Path::new("runs").join(name).join("watch");
     let out = arguments.out.clone().or_else(|| keep.map(|_| kept()));
+    let seeds: Vec<u64> = (0..arguments.seeds).map(|index| arguments.seed.wrapping_add(index)).collect();
+    if let Some(out) = &out {
+        place(out, &plan, &seeds, arguments.force)?;
+    }
     let settings = WatchSettings {
         behaviour: arguments.behaviour.clone(),
-        seeds: (0..arguments.seeds).map(|index| arguments.seed.wrapping_add(index)).collect(),
+        seeds,
         threads: arguments.threads.unwrap_or(0) as usize,
         keep,
-        finished: out.clone().map(finished),
+        finished: out.clone().map(|out| finished(out, arguments.force)),
         overrides,
         filter_folders: sources.filter_dir.clone(),
         packed: {
@@ -60,21 +65,32 @@ pub(crate) fn run(arguments: &WatchArguments, console: &mut Console) -> Result<u
         }
         return Ok(status);
     }
+    tell(arguments, &address, out.as_deref(), console)?;
+    if !arguments.no_open {
+        open(&address.url);
+    }
+    relearner.serve(&stop)?;
+    Ok(0)
+}
+
+/// Where the page is, what is watched and where it is written.
+#[cfg(feature = "serve")]
+fn tell(
+    arguments: &WatchArguments,
+    address: &watch::Address,
+    out: Option<&std::path::Path>,
+    console: &mut Console,
+) -> Result<(), ConsoleError> {
     console.json(&serde_json::json!({ "address": address.url, "port": address.port }))?;
     if address.port != arguments.port && arguments.port != 0 {
         console.note(&format!("port {} is taken: the page is on port {}", arguments.port, address.port));
     }
     console.line(&format!("page:      {}", address.url))?;
     console.line(&format!("watching:  {}; end with Ctrl-C", arguments.behaviour.display()))?;
-    if let Some(out) = &out {
+    if let Some(out) = out {
         console.line(&format!("results:   {}", out.display()))?;
     }
-    console.finish()?;
-    if !arguments.no_open {
-        open(&address.url);
-    }
-    relearner.serve(&stop)?;
-    Ok(0)
+    console.finish()
 }
 
 /// The command line allows no other words.
@@ -84,15 +100,33 @@ fn keep(word: Option<&str>) -> Option<engine::learner::Carry> {
     engine::learner::Carry::ALL.into_iter().find(|(name, _)| *name == word).map(|(_, carry)| carry)
 }
 
+/// Refuses a folder that holds the run of somebody else before anything is learned; nothing is left there.
+#[cfg(feature = "serve")]
+fn place(
+    out: &std::path::Path,
+    plan: &engine::experiment::Plan,
+    seeds: &[u64],
+    force: bool,
+) -> engine::diagnostic::Result<()> {
+    insight::folder::RunFolder::create(out, plan, seeds, if_taken(force)).map(drop)
+}
+
+/// An older run of the same script is what is written anew after each save.
+#[cfg(feature = "serve")]
+fn if_taken(force: bool) -> insight::folder::IfTaken {
+    use insight::folder::IfTaken;
+    if force { IfTaken::Replace } else { IfTaken::ReplaceOwn }
+}
+
 /// Writes every finished run to a folder.
 #[cfg(feature = "serve")]
-fn finished(out: std::path::PathBuf) -> watch::Finished {
+fn finished(out: std::path::PathBuf, force: bool) -> watch::Finished {
     use engine::experiment::{RunLog, SeedRun};
-    use insight::folder::{IfTaken, RunFolder, SeedResult};
+    use insight::folder::{RunFolder, SeedResult};
     Box::new(move |run, tests, seconds| {
         let (plan, many) = (&run.plan, run.seeds.len() > 1);
         let seeds: Vec<u64> = run.seeds.iter().map(|seed| seed.seed).collect();
-        let folder = RunFolder::create(&out, plan, &seeds, IfTaken::Replace)?;
+        let folder = RunFolder::create(&out, plan, &seeds, if_taken(force))?;
         let mut results = Vec::new();
         for (seed, tested) in run.seeds.iter().zip(tests) {
             // A finished run has it.

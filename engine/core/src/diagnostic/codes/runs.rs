@@ -100,9 +100,10 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
     (
         "E-LOG-RUN",
         Kind::State,
-        "The log beside this run.toml or summary.json was written for another run.\n\
-         A log is useless without the settings and the seed that it was recorded with. Keep the files of one \
-         run together.",
+        "Files of a run's folder do not belong together: log.bin, policy.toml or summary.json is of another run.\n\
+         A log is useless without the settings and the seed that it was recorded with, and figures say nothing of another \
+         table: summary.json holds the digest of what was learned. Keep the files of one run together. A table that you \
+         have changed yourself can be tested in a folder of its own, with run.toml and policy.toml alone.",
     ),
     (
         "E-LOG-STEP",

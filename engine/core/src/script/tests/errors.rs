@@ -122,7 +122,7 @@ fn a_wrong_setting_is_shown_at_its_key_or_value() {
     expect(&format!("world(); {RULE}"), "E-SCRIPT-SETTING", "world", "world(\"room\")");
     expect(&format!("cammera(#{{ tilt_deg: 42 }}); {RULE}"), "E-SCRIPT-NAME", "cammera", "'camera'");
     expect(&format!("learner(\"dqn\"); {RULE}"), "E-SCRIPT-SETTING", "learner", "memory");
-    expect(&format!("actions([[0.4]]); {RULE}"), "E-SCRIPT-SETTING", "actions", "m/s");
+    expect(&format!("actions([[0.4]]); {RULE}"), "E-SCRIPT-SETTING", "[0.4]", "m/s");
     expect("fn reward(facts) { world(\"x\"); 1 }", "E-SCRIPT-SETTING", "world", "top");
 }
 

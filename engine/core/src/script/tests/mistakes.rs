@@ -183,3 +183,20 @@ fn shipped_scripts_with_several_damages_are_told_in_order() {
         }
     }
 }
+
+#[test]
+fn every_mistake_in_a_list_of_actions_and_of_the_parts_of_a_state_is_told() {
+    let actions = "actions([[0.4], [9.4, 0.0], [0.2, 0.0], [\"x\", 0.0]]);\nrule \"a\" when robot.contact => -1;";
+    expect(actions, &[(1, "[0.4]"), (1, "[9.4, 0.0]"), (1, "[\"x\", 0.0]")]);
+    let state = "state(\"camrea\",\nbins(laser.front, [1.0, 0.5]),\nbins(laser.left, [1.0, 1.0]), 5);\nrule \"a\" when robot.contact => -1;";
+    expect(state, &[(1, "state"), (2, "laser"), (3, "laser")]);
+}
+
+#[test]
+fn who_indexes_the_laser_as_elsewhere_is_told_how_beams_are_written() {
+    for read in ["laser[beam]", "laser[\"front\"]", "laser(5)", "laser[1.5]"] {
+        let text = format!("rule \"a\" when {read} < 1.0 => -1;");
+        let told = super::errors::wrong(&text);
+        assert!(told.help.as_deref().is_some_and(|help| help.contains("laser[90]")), "{read}: {told:?}");
+    }
+}

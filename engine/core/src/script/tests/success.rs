@@ -31,3 +31,29 @@ fn a_condition_is_true_or_false_and_reads_the_test() {
     told("1.0 < 2.0", "1", "figure of the test");
     told("test.laps > true", "true", "compare numbers");
 }
+
+#[test]
+fn a_condition_that_no_test_can_meet_is_a_mistake() {
+    told("test.failures_per_1000 < 0", "test.failures_per_1000 < 0", "turn the comparison");
+    told("test.goal_rate > 1", "test.goal_rate > 1", "at once");
+    told("test.laps > 5 && test.laps < 3", "test.laps > 5 && test.laps < 3", "||");
+    told("-test.distance_m > 0", "-test.distance_m > 0", "turn");
+    told("test.per_1000(\"hit\") > 1000", "test.per_1000(\"hit\") > 1000", "turn");
+    let can = |condition: &str| {
+        let text = format!("rule \"hit\" when robot.contact => -1 then fail; success \"s\" when {condition};");
+        super::parse(&text).unwrap();
+    };
+    can("test.failures_per_1000 <= 0");
+    can("test.laps > 5 || test.laps < -5");
+    can("test.laps > 5 && untrained.laps < 3");
+    can("test.failures_per_1000 < 0 || test.laps > 3");
+    can("test.per_1000(\"hit\") > 3 && test.contacts_per_1000 < 2");
+}
+
+#[test]
+fn two_conditions_that_exclude_one_another_are_a_mistake() {
+    let text = "rule \"hit\" when robot.contact => -1 then fail;
+                success \"far\" when test.distance_m > 100 && test.laps >= 1; success \"near\" when 50 >= test.distance_m;";
+    expect(text, "E-SCRIPT-SUCCESS", "50 >= test.distance_m", "join the two");
+    assert!(super::errors::wrong(text).message.contains("\"near\" and success \"far\" can never hold together"));
+}

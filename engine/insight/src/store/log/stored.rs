@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::{LOG_FILE, damaged, read_log};
 use crate::disk::{is_there, read_file};
-use crate::store::{StoredRun, read_stored};
+use crate::store::{SUMMARY_FILE, StoredRun, check_policy, read_stored};
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Decider, RunLog, Summary};
 use engine::filter::Catalogue;
@@ -42,7 +42,7 @@ impl RecordedRun {
         if let Decider::Learned(policy) = &stored.decider {
             log.test.set_out_from(policy.kept());
         }
-        let path = folder.join("summary.json");
+        let path = folder.join(SUMMARY_FILE);
         if log.test.is_empty() && !log.learning.is_empty() && !is_there(&path)? {
             return Ok(Self { stored, log, summary: None });
         }
@@ -55,6 +55,9 @@ impl RecordedRun {
             let message = format!("'{}' is not the log that '{}' was written for", path.display(), text.path.display());
             let error = Diagnostic::new("E-LOG-RUN", message);
             return error.help("keep the files of one run together").fail();
+        }
+        if let Decider::Learned(policy) = &stored.decider {
+            check_policy(folder, summary.policy_sha256.as_deref(), policy)?;
         }
         Ok(Self { stored, log, summary: Some(summary) })
     }
