@@ -25,10 +25,10 @@ impl Claim<'_> {
         let path = folder.join(RUN_FILE);
         if !is_there(&path)? {
             // The folder of several runs is none of them.
-            return Ok(!seed_folders(folder).is_empty());
+            return Ok(!seed_folders(folder)?.is_empty());
         }
         let one = is_there(&folder.join(LOG_FILE))?;
-        let others = seed_folders(folder).into_iter().any(|(seed, _)| !self.seeds.contains(&seed) || !self.is_many());
+        let others = seed_folders(folder)?.into_iter().any(|(seed, _)| !self.seeds.contains(&seed) || !self.is_many());
         // One that cannot be read is somebody's too.
         Ok(one && self.is_many()
             || others
