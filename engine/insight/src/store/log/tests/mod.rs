@@ -127,7 +127,7 @@ fn a_changed_record_is_named_by_its_steps() {
 fn another_format_is_said_with_both_numbers() {
     let mut file = SAMPLE.file.clone();
     file[8] = 9;
-    assert_eq!(message(&file), "the log has format 9, this engine reads formats 1 to 3");
+    assert_eq!(message(&file), "the log has format 9, this engine reads formats 1 to 4");
 }
 
 #[test]
