@@ -265,6 +265,9 @@ fn runs_that_are_not_done_are_listed_with_how_to_go_on() {
     std::io::Read::read_to_string(&mut progress, &mut String::new()).unwrap();
     child.wait().unwrap();
     let stopped = listed();
-    assert!(stopped.contains("short in small: ") && stopped.contains("was stopped: engine run --resume runs/it"), "{stopped}");
+    assert!(
+        stopped.contains("short in small: ") && stopped.contains("was stopped: engine run --resume runs/it"),
+        "{stopped}"
+    );
     assert_eq!(stopped.lines().count(), 1, "{stopped}");
 }
