@@ -34,6 +34,8 @@ mod docs;
 mod editions;
 /// Exported policies: their kit, in C and in Python, for this processor and another.
 mod export;
+/// Every operation of the disk fails in turn.
+mod faults;
 /// Every filter that ships keeps the contract, in every form.
 mod filters;
 /// Scripts that were once called a success and are none.
@@ -54,6 +56,8 @@ mod learning_on;
 mod ledger;
 /// Seeded mistakes and what is found in them; scripts that ship; ways to cheat.
 mod lint;
+/// Runs longer than a ledger has room for: segments of their logs.
+mod long_runs;
 /// The learner that remembers its steps, from a script to its files and what is told of it.
 mod memory;
 /// All mistakes of a script and of its world at once, in order, each once.
@@ -83,6 +87,8 @@ mod rendered;
 mod replay;
 /// The paper's claims through the program, quickly; the map that a test leaves.
 mod reproduce;
+/// Every kind of run that learns goes on from its checkpoints.
+mod resumed;
 /// What a run leaves, and that it is well-formed.
 mod robots;
 mod run_folder;

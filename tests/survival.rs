@@ -58,7 +58,7 @@ fn what_is_saved_in_the_middle_learns_on_bit_for_bit_in_every_shipped_behaviour(
         for learner in [None, Some("learner.kind=ttd".to_owned())] {
             let overrides = Overrides { set: learner.into_iter().collect(), ..Overrides::default() };
             let Ok(plan) = Plan::new(Behaviour::load(&path).unwrap().into(), &overrides) else { continue };
-            if !engine::experiment::can_be_kept(&plan) {
+            if !plan.learns() {
                 continue;
             }
             let learn = |learning: &mut Learning, steps| {
@@ -243,4 +243,31 @@ fn a_branch_goes_on_from_a_step_under_other_rules_and_names_the_first_that_diffe
     for from in ["it@801", "it@0", "it", "it@-1"] {
         assert!(text("other.rhai", from, "no").contains("error[E-BRANCH]"), "{from}");
     }
+}
+
+#[test]
+fn runs_that_are_not_done_are_listed_with_how_to_go_on() {
+    let bench = Bench::new();
+    let long = &["run", "short.rhai", "--steps", "100000000", "--checkpoint", "400", "--out", "runs/it"];
+    let listed = || bench.ok(&["runs"]);
+    let mut child = spawn(&bench, long);
+    drop(wait_for_progress(&mut child));
+    let running = listed();
+    assert!(running.contains(&format!("is running: process {} (", child.id())), "{running}");
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let killed = listed();
+    assert!(killed.contains("runs/it ") && killed.contains("was killed: engine run --resume runs/it"), "{killed}");
+    assert!(bench.ok(&["runs", "prune", "--yes"]).contains("removed 0 runs"));
+    let mut child = spawn(&bench, &["run", "--resume", "runs/it"]);
+    let mut progress = wait_for_progress(&mut child);
+    assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
+    std::io::Read::read_to_string(&mut progress, &mut String::new()).unwrap();
+    child.wait().unwrap();
+    let stopped = listed();
+    assert!(
+        stopped.contains("short in small: ") && stopped.contains("was stopped: engine run --resume runs/it"),
+        "{stopped}"
+    );
+    assert_eq!(stopped.lines().count(), 1, "{stopped}");
 }

@@ -6,7 +6,7 @@ use serde_json::Value;
 use crate::support::{Bench, SCRIPT, assert_tested_again};
 
 /// A policy with a view, stages, bins and actions of its own, whose step is twice as long.
-const SLOW: &str = r#"world("small"); run(#{ steps: 800, test_steps: 400, period_s: 1.0 });
+pub(crate) const SLOW: &str = r#"world("small"); run(#{ steps: 800, test_steps: 400, period_s: 1.0 });
 actions([[0.1, 0.0], [0.1, 0.5], [0.1, -0.5]]);
 view("edges", filter("sobel", #{ threshold: 60 }), grid(#{ rows: 1, columns: 3 }));
 state("edges", bins(laser.front, [1.0])); stages(["calm", "near"]);

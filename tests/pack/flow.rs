@@ -9,7 +9,7 @@ pub(super) fn small_folder(bench: &Bench, folder: &str, name: &str) {
 }
 
 /// Builds and signs the small pack under a key that is trusted for its owner.
-pub(super) fn signed_pack(bench: &Bench, name: &str) -> String {
+pub(crate) fn signed_pack(bench: &Bench, name: &str) -> String {
     let owner = name.split('/').next().unwrap();
     small_folder(bench, "made", name);
     let file = format!("{}-0.1.0.pack", name.replace('/', "-"));

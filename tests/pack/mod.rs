@@ -8,7 +8,7 @@ mod archives;
 /// What may be claimed, and how much of it may be measured again.
 mod evidence;
 /// From a new folder to an installed pack: every command in the order of its use.
-mod flow;
+pub(crate) mod flow;
 /// Packs over https, from a real server with a certificate of its own.
 #[cfg(feature = "share")]
 mod https;

@@ -1,5 +1,7 @@
 //! Which actions may be taken: what a script's guards leave.
 
+use crate::saved::{Passed, Passing};
+
 /// A set of actions; a script has at most 64.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Allowed(u64);
@@ -26,6 +28,10 @@ impl Allowed {
     #[must_use]
     pub const fn bits(self) -> u64 {
         self.0
+    }
+
+    pub(crate) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        by.whole(&mut self.0)
     }
 
     /// Whether nothing is taken away.

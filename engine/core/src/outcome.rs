@@ -1,6 +1,6 @@
 //! How an attempt ends: what a script may say of it, and what that means.
 
-use crate::saved::{Passed, Passing};
+use crate::saved::{Passed, Passing, Unfit};
 use crate::settings::RecoverTo;
 use std::iter::Sum;
 
@@ -39,6 +39,26 @@ pub(crate) fn pass_destination(by: &mut Passing<'_>, to: &mut Option<Destination
         Some(word) => Destination::Word(*word),
         None => Destination::Start(place - words.len()),
     });
+    Ok(())
+}
+
+/// Passes what a script said of an attempt's end.
+pub(crate) fn pass_then(by: &mut Passing<'_>, then: &mut Option<Then>) -> Passed {
+    pass_one_of(by, then, &Then::ALL.map(|(_, then)| then))
+}
+
+/// Passes how an attempt ended.
+pub(crate) fn pass_ending(by: &mut Passing<'_>, ending: &mut Option<Ending>) -> Passed {
+    pass_one_of(by, ending, &[Ending::Failure, Ending::Goal, Ending::Restart, Ending::Neither])
+}
+
+fn pass_one_of<T: Copy + PartialEq>(by: &mut Passing<'_>, one: &mut Option<T>, all: &[T]) -> Passed {
+    let mut place = one.and_then(|one| all.iter().position(|other| *other == one)).map_or(0, |place| place + 1);
+    by.size(&mut place)?;
+    *one = match place.checked_sub(1) {
+        None => None,
+        Some(place) => Some(*all.get(place).ok_or(Unfit)?),
+    };
     Ok(())
 }
 

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-use crate::disk::{read_file, write_atomic};
+use crate::disk::{Lock, RESUMABLE, is_there, read_file, wanted_name, write_atomic};
 use crate::store::{RUN_FILE, SUMMARY_FILE, TAG_FILE, read_stored};
 use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::experiment::{Spread, Summary};
@@ -28,6 +28,8 @@ pub struct ShelvedRun {
     pub written: SystemTime,
     /// All its files, bytes.
     pub bytes: u64,
+    /// How far it is, of a run that is not done; null else.
+    pub unfinished: Option<NotDone>,
     /// The tag that was put on it.
     pub tag: Option<String>,
     /// Name of the behaviour; null if the run was not finished.
@@ -42,6 +44,18 @@ pub struct ShelvedRun {
     pub success: Option<bool>,
     /// Failures in 1,000 steps of the test: of many seeds the upper median.
     pub failures_per_1000: Option<f64>,
+}
+
+/// What has become of a run that is not done.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum NotDone {
+    /// It is running; who runs it.
+    Running(String),
+    /// It was killed, and waits beside its place for `engine run --resume`.
+    Killed,
+    /// It was stopped, and stands in its place with what was learned until then.
+    Stopped,
 }
 
 fn unix_s<S: Serializer>(time: &SystemTime, serializer: S) -> std::result::Result<S::Ok, S::Error> {
@@ -70,7 +84,12 @@ pub fn runs_under(folder: &Path) -> Result<Shelf> {
 }
 
 fn look(folder: &Path, depth: usize, shelf: &mut Shelf) -> Result<()> {
-    if folder.join(RUN_FILE).is_file() {
+    let name = folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    if let Some(wanted) = wanted_name(&name) {
+        shelf.runs.extend(ShelvedRun::not_done(folder, &folder.with_file_name(wanted))?);
+        return Ok(());
+    }
+    if is_there(&folder.join(RUN_FILE))? {
         shelf.runs.push(ShelvedRun::read(folder)?);
         return Ok(());
     }
@@ -98,6 +117,20 @@ fn natural(path: &Path) -> Vec<(u64, String)> {
 }
 
 impl ShelvedRun {
+    /// A run that is written beside its place, or waits there; nothing if it is what a killed command left.
+    fn not_done(part: &Path, place: &Path) -> Result<Option<Self>> {
+        let unfinished = match Lock::holder(place) {
+            Some(holder) => NotDone::Running(holder),
+            None if is_there(&part.join(RESUMABLE))? => NotDone::Killed,
+            None => return Ok(None),
+        };
+        // It may have been put into its place meanwhile.
+        if !is_there(&part.join(RUN_FILE))? {
+            return Ok(None);
+        }
+        Ok(Some(Self { folder: place.to_owned(), unfinished: Some(unfinished), ..Self::read(part)? }))
+    }
+
     fn read(folder: &Path) -> Result<Self> {
         let at = folder.join(RUN_FILE);
         let written = std::fs::metadata(&at).and_then(|meta| meta.modified());
@@ -108,6 +141,7 @@ impl ShelvedRun {
             folder: folder.to_owned(),
             written,
             bytes: bytes_under(folder),
+            unfinished: is_there(&folder.join(RESUMABLE))?.then_some(NotDone::Stopped),
             tag: tag.filter(|tag| !tag.is_empty()),
             behaviour: None,
             world: None,
@@ -147,6 +181,16 @@ impl ShelvedRun {
     /// What it came to, in a few words.
     #[must_use]
     pub fn words(&self) -> String {
+        let go_on = format!("engine run --resume {}", printable(&self.folder.display().to_string()));
+        match &self.unfinished {
+            Some(NotDone::Running(holder)) => format!("is running: {holder}"),
+            Some(NotDone::Killed) => format!("was killed: {go_on}"),
+            Some(NotDone::Stopped) => format!("{}; was stopped: {go_on}", self.figures_in_words()),
+            None => self.figures_in_words(),
+        }
+    }
+
+    fn figures_in_words(&self) -> String {
         let (Some(behaviour), Some(world)) = (&self.behaviour, &self.world) else { return "not finished".to_owned() };
         let success = match (self.seeds, self.success) {
             (1, Some(true)) => "success".to_owned(),

@@ -56,7 +56,7 @@ fn chain(ledger: &Ledger) -> Vec<u8> {
     for record in (0..ledger.len()).filter_map(|step| ledger.record_bytes(step)) {
         linked.clear();
         linked.extend_from_slice(last.bytes());
-        linked.extend_from_slice(record);
+        linked.extend_from_slice(&record);
         last = Digest::of(&linked);
         marks.extend_from_slice(&last.bytes()[..2]);
     }

@@ -16,7 +16,7 @@ use engine::experiment::{Overrides, Plan};
 use engine::filter::{Catalogue, Form, Sources};
 use engine::settings::Edition;
 use engine::world::{FamilyRange, Layout};
-use insight::disk::write_atomic;
+use insight::disk::{is_there, write_atomic};
 use insight::store::with_policies;
 
 const SCRIPT: &str = include_str!("../../../scripts/wall.rhai");
@@ -33,7 +33,7 @@ type Files = BTreeMap<String, Vec<u8>>;
 /// # Errors
 /// If the folder is there already, the script is wrong, a native filter is not allowed, or a file cannot be written.
 pub fn scaffold(name: &PackName, folder: &Path, from: Option<(&Path, Sources)>) -> Result<()> {
-    if folder.exists() {
+    if is_there(folder)? {
         let message = format!("'{}' is there already", printable(&folder.display().to_string()));
         return Diagnostic::new("E-PACK-FOLDER", message).help("choose another with --out FOLDER").fail();
     }

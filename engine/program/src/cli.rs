@@ -108,9 +108,6 @@ impl Command {
     }
 }
 
-/// Steps from one checkpoint to the next.
-const CHECKPOINT_STEPS: &str = "200000";
-
 /// Exit status: 0 learned, 1 not good enough, 2 usage, 3 bad input file, 4 a limit stopped it, 6 files and disk, 130
 /// stopped by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP (what was learned is kept).
 #[derive(Debug, Args)]
@@ -145,9 +142,13 @@ pub(crate) struct RunArguments {
     /// Go on from a step of a finished run under this behaviour, which may have other rules, and show the first step that differs
     #[arg(long, value_name = "RUN@STEP", conflicts_with_all = ["from", "seed", "seeds"])]
     pub(crate) branch: Option<String>,
-    /// Keep a checkpoint after so many steps each, from which --resume goes on
-    #[arg(long, default_value = CHECKPOINT_STEPS, value_parser = count, allow_hyphen_values = true, value_name = "N")]
-    pub(crate) checkpoint: u64,
+    /// Keep a checkpoint after so many steps each, from which --resume goes on [default: 200000]
+    #[arg(long, value_parser = count, allow_hyphen_values = true, value_name = "N")]
+    pub(crate) checkpoint: Option<u64>,
+    /// Of a run of more than 1,048,576 steps: how many segments of its log are kept, from the first on, each of so many steps. The
+    /// log's digest holds all steps, kept or not [default: all]
+    #[arg(long, value_parser = count, allow_hyphen_values = true, value_name = "N", conflicts_with = "resume")]
+    pub(crate) log_segments: Option<u64>,
     /// Go on with a run that was killed or stopped, as if nothing had happened: the folder that it was to have
     #[arg(long, value_name = "RUN", conflicts_with_all = ["behaviour", "seed", "seeds", "steps", "world", "set", "from", "branch", "out", "force"])]
     pub(crate) resume: Option<PathBuf>,

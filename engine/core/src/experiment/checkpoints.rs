@@ -6,7 +6,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::{Learning, Ledger, Plan, Progress};
+use super::{Learning, Ledger, PassedOn, Plan, Progress};
 use crate::diagnostic::{Diagnostic, Result};
 
 /// What was kept of one seed.
@@ -16,6 +16,8 @@ pub struct Kept<'a> {
     pub state: &'a [u8],
     /// Records of the steps, see [`Ledger::stored`].
     pub records: &'a [u8],
+    /// Of a run that is longer than a ledger: what goes on of the records after these; else empty.
+    pub tail: &'a [u8],
     /// Steps that were done.
     pub steps: u64,
 }
@@ -29,66 +31,91 @@ pub struct Checkpoints<'a> {
     pub from: Option<Kept<'a>>,
     /// Keeps it.
     pub keep: &'a (dyn Fn(Kept<'_>) -> Result<()> + Sync),
+    /// Takes the records that a ledger has no room for, in their order.
+    pub take: &'a (dyn Fn(PassedOn<'_>) -> Result<()> + Sync),
 }
 
 impl Checkpoints<'_> {
     /// Nothing is kept.
-    pub const NONE: Checkpoints<'static> = Checkpoints { every: 0, from: None, keep: &|_| Ok(()) };
+    pub const NONE: Checkpoints<'static> = Checkpoints { every: 0, from: None, keep: &|_| Ok(()), take: &|_| Ok(()) };
 
-    /// These, of a plan whose state can be kept; without them it learns as it always did.
-    pub(super) fn of(self, plan: &Plan) -> Option<Self> {
-        ((self.every > 0 || self.from.is_some()) && can_be_kept(plan)).then_some(self)
+    /// How many steps to learn until there is something to keep, or so many are done.
+    fn stretch(self, done: u64, end: u64) -> u64 {
+        if self.every == 0 { end - done } else { (end - done).min(self.every - done % self.every) }
     }
 
-    pub(super) fn learn(
-        self,
-        plan: &Plan,
-        seed: u64,
-        stop: &AtomicBool,
-        report: &(dyn Fn(Progress) + Sync),
-        ledger: &mut Ledger,
-    ) -> Result<Learning> {
-        let mut learning = Learning::new(plan, seed)?;
-        if let Some(kept) = self.from {
-            let fits = learning.load(kept.state).is_ok() && learning.steps() == kept.steps;
-            if !fits || !ledger.go_on_after(kept.records, kept.steps) {
-                return unfit("it does not fit the run that it stands beside").fail();
-            }
-        }
-        ledger.set_out_from(&learning.set_out_from);
-        let (all, every) = (plan.settings.run.steps, if self.every == 0 { u64::MAX } else { self.every });
-        while learning.steps() < all && learning.fault().is_none() {
-            let next = every - learning.steps() % every;
-            learning.go_on(next.min(all - learning.steps()), stop, report, ledger)?;
-            let stopped = stop.load(Ordering::Relaxed);
-            if learning.fault().is_none() && (stopped || learning.steps() < all) {
-                self.keep(&mut learning, ledger)?;
-            }
-            if stopped {
-                break;
-            }
-        }
-        Ok(learning)
+    /// Whether one is to be kept after so many steps.
+    fn is_due(self, done: u64) -> bool {
+        self.every > 0 && done.is_multiple_of(self.every)
     }
 
     fn keep(self, learning: &mut Learning, ledger: &Ledger) -> Result<()> {
+        if self.every == 0 && self.from.is_none() {
+            return Ok(());
+        }
         let state = learning.save().map_err(|_| Box::new(unfit("this run has a state that cannot be kept")))?;
-        let (records, steps) = ledger.stored();
-        (self.keep)(Kept { state: &state, records, steps })
+        let (records, tail) = (ledger.stored(), ledger.stored_tail());
+        (self.keep)(Kept { state: &state, records: &records, tail: &tail, steps: learning.steps() })
     }
 }
 
-/// Whether all that goes on while a plan is learned can be kept: not where learned policies drive too, where the reward was
-/// swapped, where a script calibrates in world after world, or where a filter comes from a file.
-#[must_use]
-pub fn can_be_kept(plan: &Plan) -> bool {
-    let mut filters = plan.settings.views().flat_map(|view| &view.filters);
-    let alone = plan.worlds.layouts().len() == 1 || !plan.behaviour.calibrates();
-    plan.learns()
-        && plan.used.is_empty()
-        && plan.earlier.is_empty()
-        && alone
-        && filters.all(|filter| plan.filters.is_own(&filter.name))
+/// Learns through all legs of a plan, with checkpoints on the way or from one on; the rules of another plan may judge along, for
+/// what comes after the last leg.
+pub(super) fn learn_through(
+    plan: &Plan,
+    seed: u64,
+    after: Option<&Plan>,
+    stop: &AtomicBool,
+    report: &(dyn Fn(Progress) + Sync),
+    ledger: &mut Ledger,
+    checkpoints: Checkpoints<'_>,
+) -> Result<Learning> {
+    let others: Vec<&Plan> = plan.rescored().chain(after).collect();
+    let mut learning = Learning::watched(plan.first_leg(), seed, &others)?;
+    ledger.set_out_from(&learning.set_out_from);
+    let swapped = checkpoints.from.map_or(Ok(0), |kept| take_up(plan, &mut learning, ledger, kept))?;
+    let (all, mut swaps) = (plan.learning_steps(), plan.swaps().skip(swapped).peekable());
+    loop {
+        let (end, mut stopped) = (swaps.peek().map_or(all, |(from, ..)| *from), false);
+        while learning.steps() < end && learning.fault().is_none() && !stopped {
+            let stretch = checkpoints.stretch(learning.steps(), end).min(ledger.room());
+            learning.go_on(stretch, stop, report, ledger)?;
+            ledger.pass_on(false, &mut |passed_on| (checkpoints.take)(passed_on))?;
+            stopped = stop.load(Ordering::Relaxed);
+            let done = learning.steps();
+            // Where rules are swapped, what is seen there is part of it: that checkpoint comes after the swap.
+            let is_due = checkpoints.is_due(done) && done < end || stopped && (done < end || end == all);
+            if is_due && learning.fault().is_none() {
+                checkpoints.keep(&mut learning, ledger)?;
+            }
+        }
+        match swaps.next() {
+            Some((_, carry, leg, _)) if learning.steps() == end && learning.fault().is_none() => {
+                learning.swap_next(leg, carry, ledger)?;
+                if checkpoints.is_due(learning.steps()) && learning.fault().is_none() {
+                    checkpoints.keep(&mut learning, ledger)?;
+                }
+            }
+            _ => break,
+        }
+    }
+    ledger.pass_on(true, &mut |passed_on| (checkpoints.take)(passed_on))?;
+    Ok(learning)
+}
+
+/// Becomes what was kept: a robot as it stood before the first step, under the rules of the leg that the checkpoint was made in,
+/// takes over all that goes on. Returns how many swaps were done.
+fn take_up(plan: &Plan, learning: &mut Learning, ledger: &mut Ledger, kept: Kept<'_>) -> Result<usize> {
+    let (mut records, mut left, mut fits, mut swapped) = (kept.records, kept.steps, true, 0);
+    let before = plan.earlier.iter().map(|leg| leg.steps);
+    for ((_, carry, leg, _), steps) in plan.swaps().take_while(|(from, ..)| *from <= kept.steps).zip(before) {
+        fits &= ledger.take_up(&mut records, steps);
+        (left, swapped) = (left - steps, swapped + 1);
+        learning.swap_next(leg, carry, ledger)?;
+    }
+    fits &= ledger.take_up(&mut records, left) && records.is_empty() && ledger.take_up_tail(kept.tail);
+    fits &= learning.load(kept.state).is_ok() && learning.steps() == kept.steps;
+    if fits { Ok(swapped) } else { unfit("it does not fit the run that it stands beside").fail() }
 }
 
 fn unfit(what: &str) -> Diagnostic {

@@ -11,6 +11,7 @@ use crate::allowed::Allowed;
 use crate::diagnostic::{Diagnostic, Result, printable};
 use crate::geometry::Twist;
 use crate::judge::{Judge, NO_ACTION};
+use crate::saved::{Passed, Passing};
 use crate::sensors::observation::Observation;
 use filter_api::Format;
 
@@ -94,6 +95,12 @@ impl CoDrivers {
         let by = self.by?;
         let policy = *self.policies.get(by)?;
         Some(self.drivers.get(policy)?.hand(by, policy, left))
+    }
+
+    /// Passes who is to drive, and what each of them remembers.
+    pub(super) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        by.option(&mut self.by, Passing::size)?;
+        by.all(&mut self.drivers, |by, driver| driver.pass(by))
     }
 
     /// What the one that is to drive perceives: its state, and that in words.
@@ -215,6 +222,15 @@ impl CoDriver {
         let held = self.last.filter(|last| self.done > 0 && allowed.contains(*last));
         let allowed = if allowed == all { Allowed::ALL } else { allowed };
         Hand { by, policy, state: self.state, allowed, held }
+    }
+
+    fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        self.eyes.pass(by)?;
+        self.judge.pass(by)?;
+        by.small(&mut self.done)?;
+        by.whole(&mut self.steps)?;
+        by.option(&mut self.last, Passing::size)?;
+        by.size(&mut self.state)
     }
 
     fn rest(&mut self, observation: &Observation) -> Result<()> {

@@ -5,6 +5,7 @@ mod passed;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::checkpoints::learn_through;
 use super::choosers::Learns;
 use super::digest::StateHash;
 use super::legs::with_gone;
@@ -119,39 +120,12 @@ pub fn learn_kept(
     ledger: &mut Ledger,
     checkpoints: Checkpoints<'_>,
 ) -> std::result::Result<Learned, Box<BrokenOff>> {
-    let mut learning = match checkpoints.of(plan) {
-        Some(checkpoints) => checkpoints.learn(plan, seed, stop, report, ledger)?,
-        None => learn_through(plan, seed, None, stop, report, ledger)?,
-    };
+    let mut learning = learn_through(plan, seed, None, stop, report, ledger, checkpoints)?;
     let learned = learning.finish();
     match learning.fault {
         Some(error) => Err(Box::new(BrokenOff { error, learned: Some(learned) })),
         None => Ok(learned),
     }
-}
-
-/// Learns through all legs; the rules of another plan may judge along, for what comes after the last one.
-pub(super) fn learn_through(
-    plan: &Plan,
-    seed: u64,
-    after: Option<&Plan>,
-    stop: &AtomicBool,
-    report: &(dyn Fn(Progress) + Sync),
-    ledger: &mut Ledger,
-) -> Result<Learning> {
-    let others: Vec<&Plan> = plan.rescored().chain(after).collect();
-    let mut learning = Learning::watched(plan.first_leg(), seed, &others)?;
-    ledger.set_out_from(&learning.set_out_from);
-    learning.go_on(plan.first_steps(), stop, report, ledger)?;
-    for (from, carry, leg, steps) in plan.swaps() {
-        if learning.steps() < from {
-            break;
-        }
-        let said = if carry == Carry::Rescore { learning.cycle.dismiss_witness() } else { Vec::new() };
-        learning.swap_rejudged(leg, carry, &said, ledger)?;
-        learning.go_on(steps, stop, report, ledger)?;
-    }
-    Ok(learning)
 }
 
 /// A robot that learns: for some steps, then for more, under the same reward or another.
@@ -183,7 +157,7 @@ impl Learning {
     }
 
     /// A learning robot beside which the rules of other plans judge along.
-    fn watched(plan: &Plan, seed: u64, others: &[&Plan]) -> Result<Self> {
+    pub(super) fn watched(plan: &Plan, seed: u64, others: &[&Plan]) -> Result<Self> {
         let origin = plan.origin_of(seed).map(|origin| origin.again(plan)).transpose()?;
         let kept = origin.as_ref().map_or_else(Vec::new, |origin| origin.kept.clone());
         let cycle = Cycle::watched(plan, Phase::Learning.robot(plan, seed)?, others, &kept)?;
@@ -192,6 +166,15 @@ impl Learning {
             None => plan.first_learner(cycle.state_map(), seed)?,
         };
         Ok(Self { set_out_from: kept, ..Self::with(plan, seed, cycle, learner) })
+    }
+
+    /// The next swap of its plan: what judged along has said what it was there for.
+    ///
+    /// # Errors
+    /// As [`Learning::swap`].
+    pub(super) fn swap_next(&mut self, plan: &Plan, carry: Carry, ledger: &mut Ledger) -> Result<()> {
+        let said = if carry == Carry::Rescore { self.cycle.dismiss_witness() } else { Vec::new() };
+        self.swap_rejudged(plan, carry, &said, ledger)
     }
 
     /// What learned, and what the rules say that judged along to the end.

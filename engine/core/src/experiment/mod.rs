@@ -61,7 +61,7 @@ pub use certify::{
     Aim, Asked, Certificate, CertifiedRate, CertifiedShare, DRAWS, HardDraw, MOST_DRAWS, certify, count_bounds,
     rate_bounds, share_bounds,
 };
-pub use checkpoints::{Checkpoints, Kept, can_be_kept};
+pub use checkpoints::{Checkpoints, Kept};
 pub use choosers::{ByState, Frozen, Learns};
 use choosers::{Recorded, Together};
 pub use co_driver::Hand;
@@ -71,7 +71,7 @@ pub use disagreement::{CombinationFigures, Disagreement, DisagreementFigures, Di
 pub use drive::{Choice, Chooser, Each, Observer, drive};
 pub use eyes::{Eyes, ViewStage};
 pub use learning::{BrokenOff, Learned, Learning, Progress, learn, learn_into, learn_kept};
-pub use ledger::{Attempt, Ledger, LedgerLeg, MOST_STEPS, Record, RecordShape};
+pub use ledger::{Attempt, Ledger, LedgerLeg, MOST_STEPS, PassedOn, Record, RecordShape, Segment, StoredSegments};
 pub use legs::Leg;
 
 pub use origin::Origin;

@@ -6,8 +6,8 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use super::learning::learn_through;
-use super::{Ledger, Plan};
+use super::checkpoints::learn_through;
+use super::{Checkpoints, Ledger, Plan};
 use crate::diagnostic::{Diagnostic, Result, SourceText, grouped, printable};
 use crate::learner::{Carry, Learner, Rejudged, ShippedLearner, shipped_learner};
 use crate::settings::{LearnerKind, Settings};
@@ -106,7 +106,7 @@ impl Origin {
     pub(super) fn again(&self, next: &Plan) -> Result<Reached> {
         let (never, mut off) = (AtomicBool::new(false), Ledger::off());
         let last = (self.carry == Carry::Rescore).then_some(next);
-        let mut again = learn_through(&self.plan, self.seed, last, &never, &|_| (), &mut off)?;
+        let mut again = learn_through(&self.plan, self.seed, last, &never, &|_| (), &mut off, Checkpoints::NONE)?;
         let learned = again.finish();
         if let Some(fault) = again.fault() {
             return Err(Box::new(fault.clone()));

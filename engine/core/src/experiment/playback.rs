@@ -223,7 +223,13 @@ impl<'a, R: Robot> Playback<'a, R> {
     /// # Errors
     /// If a sensor, a filter or the script fails, or the recorded action is not one of the plan's.
     pub fn advance(&mut self) -> Result<Option<Step>> {
-        let Some(record) = self.ledger.record(self.done) else { return Ok(None) };
+        let Some(record) = self.ledger.record(self.done) else {
+            if self.done < self.ledger.len() {
+                let message = format!("step {} of the log cannot be read any more", self.done);
+                return Diagnostic::new("E-LOG-FILE", message).help("copy the folder of the run again").fail();
+            }
+            return Ok(None);
+        };
         self.make_ready()?;
         let action = usize::from(record.action);
         if action >= self.cycle.motions() {

@@ -9,6 +9,7 @@ use crate::allowed::Allowed;
 use crate::diagnostic::Result;
 use crate::learner::PolicyRoom;
 use crate::random::{Random, Stream};
+use crate::saved::{Passed, Passing};
 use std::sync::Arc;
 
 /// The policies that a plan uses, as they choose.
@@ -44,6 +45,12 @@ impl UsedDrivers {
     /// Whoever chooses, with these to hand over to.
     pub(super) fn with<C>(&mut self, own: C) -> Relay<'_, C> {
         Relay { own, used: self }
+    }
+
+    /// Passes what goes on from step to step.
+    pub(super) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        by.random(&mut self.random)?;
+        by.option(&mut self.owed, |by, step| step.pass(by))
     }
 
     /// Tells `own` what its last step led to, if it does not know yet.

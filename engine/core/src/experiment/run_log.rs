@@ -2,7 +2,7 @@
 
 use sha2::{Digest, Sha256};
 
-use super::{Ledger, Plan};
+use super::{Ledger, Plan, RecordShape};
 use crate::digest::hex;
 
 /// Bytes of a digest.
@@ -20,17 +20,23 @@ pub struct RunLog {
 }
 
 impl RunLog {
-    /// An empty log with room for the steps of a plan.
+    /// An empty log for the steps of a plan: of those of learning that it has no room for, a plan without earlier legs passes the
+    /// records on.
     #[must_use]
     pub fn new(plan: &Plan) -> Self {
-        Self::with_room(plan, u64::MAX)
+        let ledger = if plan.earlier.is_empty() { Ledger::without_end } else { Ledger::new };
+        let learning = ledger(plan.first_leg(), if plan.learns() { plan.first_steps() } else { 0 });
+        Self { learning, test: Ledger::new(plan, plan.settings.run.test_steps) }
     }
 
-    /// An empty log with room for at most so many steps of each phase.
+    /// An empty log for the same steps as another, whose digest holds those that it holds there.
     #[must_use]
-    fn with_room(plan: &Plan, most: u64) -> Self {
-        let learning = Ledger::new(plan.first_leg(), if plan.learns() { plan.first_steps().min(most) } else { 0 });
-        Self { learning, test: Ledger::new(plan, plan.settings.run.test_steps.min(most)) }
+    pub fn like(&self, plan: &Plan) -> Self {
+        let new = Self::new(plan);
+        if self.learning.has_no_end() || !new.learning.has_no_end() {
+            return new;
+        }
+        Self { learning: Ledger::new(plan, plan.first_steps()), ..new }
     }
 
     /// A log that keeps nothing.
@@ -45,21 +51,26 @@ impl RunLog {
         self.learning.len() + self.test.len() > 0
     }
 
-    /// SHA-256 over the records of both phases, chunk by chunk, 64 hexadecimal digits.
+    /// SHA-256 over the records of both phases, chunk by chunk, those that were passed on too: 64 hexadecimal digits.
     #[must_use]
     pub fn sha256(&self) -> String {
-        hex(&self.chunks().last().map_or([0; DIGEST_BYTES], |(_, digest)| digest))
+        let end = self.learning.segments().last().map(|segment| segment.digest);
+        let last = || self.chunks().last().map(|(_, digest)| digest);
+        let last = if self.test.is_empty() { end.or_else(last) } else { last() };
+        hex(&last.unwrap_or([0; DIGEST_BYTES]))
     }
 
-    /// The chunks of both phases, each with its digest, which holds the one before it.
+    /// The chunks of both phases, each with its digest, which holds the one before it: before the first of the test comes the last
+    /// one that was passed on.
     pub fn chunks(&self) -> impl Iterator<Item = (&[u8], [u8; DIGEST_BYTES])> {
-        let phases = [&self.learning, &self.test].into_iter();
-        let legs = phases.flat_map(Ledger::legs);
-        let chunks = legs.flat_map(|(shape, bytes)| bytes.chunks(CHUNK_STEPS * shape.bytes()));
-        chunks.scan([0; DIGEST_BYTES], |before, records| {
-            *before = chained(before, records);
-            Some((records, *before))
+        let end = self.learning.segments().last().map(|segment| segment.digest);
+        let of = |(shape, bytes): (&RecordShape, _)| <[u8]>::chunks(bytes, CHUNK_STEPS * shape.bytes()).map(Some);
+        let all = self.learning.legs().flat_map(of).chain([None]).chain(self.test.legs().flat_map(of));
+        all.scan([0; DIGEST_BYTES], move |before, records| {
+            *before = records.map_or(end.unwrap_or(*before), |records| chained(before, records));
+            Some(records.map(|records| (records, *before)))
         })
+        .flatten()
     }
 }
 

@@ -2,7 +2,8 @@
 
 use crate::allowed::Allowed;
 use crate::learner::Transition;
-use crate::outcome::{Destination, Ending, Then};
+use crate::outcome::{Destination, Ending, Then, pass_destination, pass_then};
+use crate::saved::{Passed, Passing};
 
 /// One step, from the choice of an action to what the script says of it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -69,5 +70,19 @@ impl Step {
             next_potential: self.next_potential,
             next_allowed: self.next_allowed,
         }
+    }
+
+    /// Passes all of it: whoever is still to learn of a step keeps it.
+    pub(super) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        by.whole(&mut self.index)?;
+        [&mut self.state, &mut self.action, &mut self.next_state].into_iter().try_for_each(|number| by.size(number))?;
+        by.numbers([&mut self.reward, &mut self.potential, &mut self.next_potential])?;
+        pass_then(by, &mut self.then)?;
+        pass_destination(by, &mut self.to)?;
+        by.option(&mut self.entered, Passing::size)?;
+        by.option(&mut self.driver, Passing::size)?;
+        let flags = [&mut self.explored, &mut self.contact, &mut self.hands_over, &mut self.guarded, &mut self.hop];
+        flags.into_iter().try_for_each(|flag| by.flag(flag))?;
+        self.next_allowed.pass(by)
     }
 }

@@ -1,11 +1,12 @@
 //! What `fn calibrate` returned: taken once, and handed to native trees as numbers and arrays of numbers.
 
+use super::compiled::CompiledScript;
 use super::evaluate::Present;
 use super::explain;
 use super::expression::Slot;
 use super::views::{number, wrong_length};
 use crate::diagnostic::{Diagnostic, Result};
-use rhai::{Dynamic, Map};
+use rhai::{Dynamic, Map, Position};
 use std::sync::Arc;
 
 impl Present {
@@ -28,19 +29,29 @@ impl Present {
             .at(source, span, "defined here")
             .fail();
         }
-        self.slots = compiled.needs.slots.iter().map(|key| slot(&result, key)).collect();
-        for wanted in &compiled.needs.slot_uses {
-            let message = match (&self.slots[wanted.slot], wanted.length) {
+        self.slots = compiled.slots_of(&result).map_err(|(position, message)| {
+            Box::new(explain::mistake(source, "E-SCRIPT-REWARD", position, message, "needed here"))
+        })?;
+        self.calibrated = Some(Arc::new(result));
+        Ok(())
+    }
+}
+
+impl CompiledScript {
+    /// What native trees read of a result; or where one needs something else, and what.
+    pub(super) fn slots_of(&self, result: &Dynamic) -> std::result::Result<Vec<Slot>, (Position, String)> {
+        let slots: Vec<Slot> = self.needs.slots.iter().map(|key| slot(result, key)).collect();
+        for wanted in &self.needs.slot_uses {
+            let message = match (&slots[wanted.slot], wanted.length) {
                 (Slot::Number(_), None) => continue,
                 (Slot::Numbers(values), Some(length)) if values.len() == length => continue,
                 (Slot::Numbers(values), Some(length)) => wrong_length(length, values.len()),
                 (_, Some(_)) => "'fn calibrate' has not returned an array of numbers for this".to_owned(),
                 (_, None) => "'fn calibrate' has not returned a number for this".to_owned(),
             };
-            return explain::mistake(source, "E-SCRIPT-REWARD", wanted.position, message, "needed here").fail();
+            return Err((wanted.position, message));
         }
-        self.calibrated = Some(Arc::new(result));
-        Ok(())
+        Ok(slots)
     }
 }
 

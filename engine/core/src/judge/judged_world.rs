@@ -30,6 +30,11 @@ impl JudgedWorld {
         }
     }
 
+    /// What was calibrated there, and what native trees read of it.
+    pub(super) fn calibration_mut(&mut self) -> (&mut Option<Arc<Dynamic>>, &mut Vec<Slot>) {
+        (&mut self.calibrated, &mut self.slots)
+    }
+
     /// Puts it in the place of what is present, and that in its place.
     pub(super) fn swap(&mut self, destinations: &mut Vec<Option<Destination>>, present: &mut Present) {
         swap(&mut self.destinations, destinations);

@@ -46,7 +46,7 @@ pub struct Judge {
     /// What guards take away of the actions.
     guarding: Guarding,
     /// What was made for each world; of the present one it is above.
-    elsewhere: Vec<JudgedWorld>,
+    pub(super) elsewhere: Vec<JudgedWorld>,
     world: usize,
 }
 

@@ -18,6 +18,7 @@ mod ground_facts;
 pub(crate) mod guards;
 mod judged_world;
 mod judging;
+mod kept_calibration;
 pub(crate) mod memory;
 pub(crate) mod needs;
 pub(crate) mod odometry;

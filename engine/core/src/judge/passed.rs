@@ -1,4 +1,4 @@
-//! What of a judge goes on from step to step, for checkpoints; what was calibrated comes out again when it is made anew.
+//! What of a judge goes on from step to step, for checkpoints.
 
 use super::facts::{Facts, StageFacts};
 use super::judging::{Judge, StageNow};
@@ -20,6 +20,7 @@ impl Judge {
         for facts in [&mut self.present.facts, &mut self.present.previous] {
             Arc::make_mut(facts).pass(by)?;
         }
+        self.pass_calibrated(by)?;
         if self.stage.index > 0 && self.stage.index >= self.present.compiled.stages.len() { Err(Unfit) } else { Ok(()) }
     }
 }

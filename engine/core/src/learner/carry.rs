@@ -1,6 +1,7 @@
 //! What is carried on of what was learned, when the reward changes or a run goes on from another.
 
 use super::Transition;
+use crate::saved::{Passed, Passing};
 use serde::{Deserialize, Serialize};
 
 /// What becomes of the table, or of the remembered steps.
@@ -20,12 +21,19 @@ pub enum Carry {
 }
 
 /// A remembered step, as the rules that come next judge it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Rejudged {
     /// The step, with the reward and the ending of these rules.
     pub transition: Transition,
     /// The robot was put elsewhere after it.
     pub moved: bool,
+}
+
+impl Rejudged {
+    pub(crate) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        self.transition.pass(by)?;
+        by.flag(&mut self.moved)
+    }
 }
 
 impl Carry {

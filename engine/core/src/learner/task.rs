@@ -2,8 +2,9 @@
 
 use crate::allowed::Allowed;
 use crate::geometry::Twist;
-use crate::outcome::Ending;
+use crate::outcome::{Ending, pass_ending};
 use crate::random::Random;
+use crate::saved::{Passed, Passing};
 use crate::state::Digit;
 
 use super::Mirror;
@@ -32,7 +33,7 @@ impl Task {
 }
 
 /// One step, as the learner sees it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Transition {
     /// The state in which the action was chosen.
     pub state: usize,
@@ -51,4 +52,13 @@ pub struct Transition {
     pub next_potential: f64,
     /// The actions that guards leave after the step, before any recovery.
     pub next_allowed: Allowed,
+}
+
+impl Transition {
+    pub(crate) fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
+        [&mut self.state, &mut self.action, &mut self.next_state].into_iter().try_for_each(|number| by.size(number))?;
+        by.numbers([&mut self.reward, &mut self.potential, &mut self.next_potential])?;
+        pass_ending(by, &mut self.ending)?;
+        self.next_allowed.pass(by)
+    }
 }

@@ -9,7 +9,8 @@ use engine::diagnostic::{Diagnostic, Result};
 /// Writes `bytes` to a new file beside `path`, and renames it over `path` when they are on the disk.
 ///
 /// # Errors
-/// `E-IO` if the file cannot be written or renamed; the old file is then unchanged.
+/// `E-IO` if the file cannot be written or renamed; the old file is then unchanged. Where only the new name cannot be made to last
+/// through a power cut, the new file stands there, whole.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<()> {
     try_write(path, bytes).map_err(|error| Box::new(Diagnostic::disk("write", path, &error)))
 }

@@ -35,8 +35,20 @@ impl Lock {
         Ok(lock)
     }
 
+    /// Who holds the lock of a file or folder, as it has named itself; nothing if nobody does, or that cannot be told.
+    #[must_use]
+    pub fn holder(of: &Path) -> Option<String> {
+        let mut file = super::open_file(&lock_of(of)).ok()?;
+        if !matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)) {
+            return None;
+        }
+        let mut holder = Vec::new();
+        (&mut file).take(MOST_BYTES).read_to_end(&mut holder).ok()?;
+        Some(printable(&String::from_utf8_lossy(&holder)).to_string())
+    }
+
     pub(super) fn take_alone(of: &Path) -> Result<Self> {
-        let path = folder_of(of).join(format!(".{}{LOCK}", name_of(of)));
+        let path = lock_of(of);
         let disk = |error: std::io::Error| Box::new(Diagnostic::disk("lock", of, &error));
         for _ in 0..TRIES {
             let mut file = open(&path).map_err(disk)?;
@@ -61,6 +73,10 @@ impl Drop for Lock {
         drop(std::fs::remove_file(&self.path));
         drop(self.file.unlock());
     }
+}
+
+fn lock_of(of: &Path) -> PathBuf {
+    folder_of(of).join(format!(".{}{LOCK}", name_of(of)))
 }
 
 fn open(path: &Path) -> IoResult<File> {

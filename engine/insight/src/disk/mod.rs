@@ -5,6 +5,7 @@
 //! | `atomic` | a file, replaced as a whole |
 //! | `lock` | one writer of a file or folder, who is named to others |
 //! | `staged` | a folder, made beside its place and swapped in |
+//! | `together` | files that come into a folder together |
 //! | `reading` | the one reader of files that a stranger may have put there |
 //!
 //! A new file or folder has a name that nobody can predict until it is whole, no link is followed where something is written, and
@@ -14,11 +15,13 @@ mod atomic;
 mod lock;
 mod reading;
 mod staged;
+mod together;
 
 pub use atomic::write_atomic;
 pub use lock::Lock;
-pub use reading::{is_there, read_file};
+pub use reading::{is_there, open_file, read_file};
 pub use staged::{RESUMABLE, Staged};
+pub use together::Together;
 
 use std::path::Path;
 
@@ -38,7 +41,7 @@ fn name_of(path: &Path) -> String {
 }
 
 /// The name that a file or folder is to have which is not whole yet: `1` of `.1.x3Zq9w.part`.
-fn wanted_name(part: &str) -> Option<&str> {
+pub(crate) fn wanted_name(part: &str) -> Option<&str> {
     Some(part.strip_prefix('.')?.strip_suffix(PART)?.rsplit_once('.')?.0)
 }
 

@@ -23,6 +23,19 @@ pub fn is_there(path: &Path) -> Result<bool> {
 /// # Errors
 /// Of kind `InvalidInput` if it is no ordinary file, `FileTooLarge` if it has more than `most` bytes; those of the system.
 pub fn read_file(path: &Path, most: u64) -> IoResult<Vec<u8>> {
+    let mut bytes = Vec::new();
+    open_file(path)?.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most {
+        return Err(Error::new(ErrorKind::FileTooLarge, format!("it has more than {most} bytes")));
+    }
+    Ok(bytes)
+}
+
+/// An ordinary file, opened for whoever reads it piece by piece.
+///
+/// # Errors
+/// Of kind `InvalidInput` if it is no ordinary file; those of the system.
+pub fn open_file(path: &Path) -> IoResult<File> {
     let is_file = |file: &std::fs::Metadata| match file.is_file() {
         true => Ok(()),
         false => Err(Error::new(ErrorKind::InvalidInput, "it is not an ordinary file")),
@@ -31,12 +44,7 @@ pub fn read_file(path: &Path, most: u64) -> IoResult<Vec<u8>> {
     is_file(&std::fs::metadata(path)?)?;
     let file = open(path)?;
     is_file(&file.metadata()?)?;
-    let mut bytes = Vec::new();
-    file.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > most {
-        return Err(Error::new(ErrorKind::FileTooLarge, format!("it has more than {most} bytes")));
-    }
-    Ok(bytes)
+    Ok(file)
 }
 
 fn open(path: &Path) -> IoResult<File> {

@@ -133,7 +133,7 @@ fn refused(target: &Path, what: &str) -> Diagnostic {
 }
 
 /// A folder for what is to have this name, which nobody else has.
-fn make(parent: &Path, name: &str) -> IoResult<PathBuf> {
+pub(super) fn make(parent: &Path, name: &str) -> IoResult<PathBuf> {
     let prefix = format!(".{name}.");
     let mut builder = tempfile::Builder::new();
     builder.prefix(&prefix).suffix(PART);
@@ -181,8 +181,8 @@ fn sync(folder: &Path) -> IoResult<()> {
     sync_folder(folder)
 }
 
-/// Two folders change places, at once where the system can do that.
-fn exchange(one: &Path, other: &Path) -> IoResult<()> {
+/// Two folders, or two files, change places, at once where the system can do that.
+pub(super) fn exchange(one: &Path, other: &Path) -> IoResult<()> {
     #[cfg(any(target_os = "linux", target_os = "macos"))]
     {
         use rustix::fs::{CWD, RenameFlags, renameat_with};

@@ -37,7 +37,7 @@ impl RunFolder {
     /// Whether its page shows what a check of the script found.
     #[must_use]
     pub fn shows_check(&self) -> bool {
-        let pages = crate::store::seed_folders(&self.path).into_iter().map(|(_, folder)| folder);
+        let pages = crate::store::seed_folders(&self.path).unwrap_or_default().into_iter().map(|(_, folder)| folder);
         let mut pages = pages.chain([self.path.clone()]).filter_map(|of| std::fs::read(of.join(PAGE_FILE)).ok());
         pages.any(|page| !page.windows(UNCHECKED.len()).any(|bytes| bytes == UNCHECKED))
     }

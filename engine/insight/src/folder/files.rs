@@ -5,7 +5,7 @@ use std::path::Path;
 use super::SeedResult;
 use crate::disk::write_atomic;
 use crate::report::{CurveRow, curve_csv, disagreements_csv};
-use crate::store::{LOG_FILE, POLICY_FILE, RUN_FILE, SUMMARY_FILE, log_to_bytes, policy_to_toml, run_to_toml};
+use crate::store::{LOG_FILE, POLICY_FILE, RUN_FILE, SUMMARY_FILE, log_to_bytes, policy_to_toml, run_to_toml, settle};
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{Learned, Plan, RunLog, TestRun, WINDOW_STEPS};
 
@@ -39,10 +39,11 @@ pub const CURVE_FILE: &str = "curve.csv";
 /// The file of a combination in a run's folder: where its policies disagree.
 pub const DISAGREEMENTS_FILE: &str = "disagreements.csv";
 
-/// Writes `log.bin`.
+/// Writes `log.bin`; its segments were written while the robot learned.
 pub(super) fn write_log(folder: &Path, plan: &Plan, seed: u64, log: &RunLog) -> Result<()> {
     let run = run_to_toml(plan, seed)?;
-    write_atomic(&folder.join(LOG_FILE), &log_to_bytes(log, plan, seed, &run)?)
+    let kept = settle(folder, log.learning.segments(), log.learning.shape().bytes())?;
+    write_atomic(&folder.join(LOG_FILE), &log_to_bytes(log, plan, seed, &run, kept)?)
 }
 
 /// Writes `policy.toml`.

@@ -29,7 +29,7 @@ pub use explained::{ExplainedStep, Side};
 pub use files::{CURVE_FILE, DISAGREEMENTS_FILE, create_folder, curve_of, disagreements_of, write_json};
 pub use removal::remove_run;
 pub use test_folder::{TEST_FILE, TestFolder};
-pub use unfinished::Unfinished;
+pub use unfinished::{ALL_SEGMENTS, Unfinished};
 
 /// One seed's results.
 #[derive(Debug, Clone)]

@@ -7,7 +7,9 @@ use super::pages::PAGE_FILE;
 use super::pictures::PICTURES;
 use super::{CERTIFICATE_FILE, CURVE_FILE, DISAGREEMENTS_FILE, TEST_FILE, certificate::CERTIFICATE_PICTURE};
 use crate::disk::{Lock, RESUMABLE, is_there, is_unfinished};
-use crate::store::{CHECKPOINT_FILE, LOG_FILE, POLICY_FILE, RUN_FILE, STEPS_FILE, SUMMARY_FILE, TAG_FILE, read_stored};
+use crate::store::{
+    CHECKPOINT_FILE, LOG_FILE, POLICY_FILE, RUN_FILE, STEPS_FILE, SUMMARY_FILE, TAG_FILE, is_segment_file, read_stored,
+};
 use engine::diagnostic::{Diagnostic, Result, SourceText, printable};
 
 /// Files of a run under names of their own.
@@ -141,6 +143,9 @@ fn remove(folder: &Path, own: &dyn Fn(&str) -> bool, kept: &mut Vec<PathBuf>) ->
         let name = name_of(&path);
         if path.is_file() && !path.is_symlink() && own(&name) {
             std::fs::remove_file(&path).map_err(|error| disk("remove", &path, &error))?;
+        } else if is_unfinished(&name) && path.is_dir() && !path.is_symlink() {
+            // What a killed command was about to put there.
+            std::fs::remove_dir_all(&path).map_err(|error| disk("remove", &path, &error))?;
         } else if is_rescored(&path, &name) {
             remove(&path, &|name| RESCORE_FILES.contains(&name), kept)?;
         } else if is_of_a_seed(&path, &name) {
@@ -171,6 +176,7 @@ fn is_of_a_seed(path: &Path, name: &str) -> bool {
 fn is_of_a_run(name: &str) -> bool {
     let picture = name.strip_suffix(".svg").or_else(|| name.strip_suffix(".png"));
     FILES.contains(&name)
+        || is_segment_file(name)
         || picture.is_some_and(|stem| PICTURES.contains(&stem) || stem == CERTIFICATE_PICTURE)
         || ExplainedStep::of_file(name).is_some()
 }

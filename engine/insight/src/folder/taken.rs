@@ -25,10 +25,10 @@ impl Claim<'_> {
         let path = folder.join(RUN_FILE);
         if !is_there(&path)? {
             // The folder of several runs is none of them.
-            return Ok(!seed_folders(folder).is_empty());
+            return Ok(!seed_folders(folder)?.is_empty());
         }
         let one = is_there(&folder.join(LOG_FILE))?;
-        let others = seed_folders(folder).into_iter().any(|(seed, _)| !self.seeds.contains(&seed) || !self.is_many());
+        let others = seed_folders(folder)?.into_iter().any(|(seed, _)| !self.seeds.contains(&seed) || !self.is_many());
         // One that cannot be read is somebody's too.
         Ok(one && self.is_many()
             || others
@@ -41,9 +41,9 @@ impl Claim<'_> {
     /// If that cannot be told.
     pub(super) fn is_of_others(self, folder: &Path) -> Result<bool> {
         if !is_there(&folder.join(RUN_FILE))? {
-            return Ok(!seed_folders(folder).is_empty());
+            return Ok(!seed_folders(folder)?.is_empty());
         }
-        let others = seed_folders(folder).into_iter().any(|(seed, _)| !self.seeds.contains(&seed));
+        let others = seed_folders(folder)?.into_iter().any(|(seed, _)| !self.seeds.contains(&seed));
         let one = is_there(&folder.join(LOG_FILE))?;
         let old = read_file(&folder.join(RUN_FILE), MOST_RUN_BYTES).ok().and_then(|old| String::from_utf8(old).ok());
         let script = |run: &str| script_of(run).map(|(behaviour, seed, path)| (behaviour, seed, whole(&path)));

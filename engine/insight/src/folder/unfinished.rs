@@ -9,7 +9,8 @@ use super::removal::retire;
 use super::{RunFolder, create_folder, write_json};
 use crate::disk::{RESUMABLE, Staged, is_there};
 use crate::store::{
-    CHECKPOINT_FILE, CheckpointWriter, RUN_FILE, STEPS_FILE, StoredCheckpoint, read_stored, run_to_toml,
+    CHECKPOINT_FILE, CheckpointWriter, RUN_FILE, STEPS_FILE, SegmentWriter, StoredCheckpoint, read_stored, run_to_toml,
+    segment_file,
 };
 use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::experiment::{Kept, Plan};
@@ -24,6 +25,21 @@ pub struct Unfinished {
     pub seeds: u64,
     /// Steps from one checkpoint to the next.
     pub every: u64,
+    /// How many segments of the log are kept.
+    #[serde(default = "all", skip_serializing_if = "is_all")]
+    pub segments: u64,
+}
+
+/// Every segment of the log is kept.
+pub const ALL_SEGMENTS: u64 = u64::MAX;
+
+fn all() -> u64 {
+    ALL_SEGMENTS
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
+fn is_all(segments: &u64) -> bool {
+    *segments == ALL_SEGMENTS
 }
 
 impl Unfinished {
@@ -76,6 +92,14 @@ impl RunFolder {
     /// If the seed's folder or its file of records cannot be made.
     pub fn keeper(&self, plan: &Plan, seed: u64, after: Option<&StoredCheckpoint>) -> Result<CheckpointWriter> {
         CheckpointWriter::new(&self.of_seed(seed)?, &run_to_toml(plan, seed)?, seed, after)
+    }
+
+    /// Keeps the segments of a seed's log, the first so many of them.
+    ///
+    /// # Errors
+    /// If the seed's folder cannot be made.
+    pub fn segments(&self, plan: &Plan, seed: u64, most: u64) -> Result<SegmentWriter> {
+        Ok(SegmentWriter::new(&self.of_seed(seed)?, &run_to_toml(plan, seed)?, seed, most))
     }
 
     /// Keeps a checkpoint. From then on the folder waits for whoever goes on with it, should this process be killed.
@@ -143,11 +167,22 @@ fn take_from_place(place: &Path, work: &Path) -> Result<()> {
         Ok(())
     };
     let of_seed = [RUN_FILE, STEPS_FILE, CHECKPOINT_FILE];
-    copy(place, work, &of_seed)?;
-    for (seed, folder) in crate::store::seed_folders(place) {
+    let copy_seed = |from: &Path, to: &Path| {
+        copy(from, to, &of_seed)?;
+        // Until one is missing.
+        for name in (1..).map(segment_file) {
+            if !is_there(&from.join(&name))? {
+                break;
+            }
+            copy(from, to, &[&name])?;
+        }
+        Ok::<(), Box<Diagnostic>>(())
+    };
+    copy_seed(place, work)?;
+    for (seed, folder) in crate::store::seed_folders(place)? {
         let to = work.join(seed.to_string());
         create_folder(&to)?;
-        copy(&folder, &to, &of_seed)?;
+        copy_seed(&folder, &to)?;
     }
     // Last: until it is there, what was copied is nothing to go on with.
     copy(place, work, &[RESUMABLE])

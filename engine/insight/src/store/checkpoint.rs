@@ -1,9 +1,9 @@
-//! `checkpoint.bin` and `steps.bin`: all that goes on while a seed learns, and the records of its steps until then.
+//! `checkpoint.bin` and `steps.bin`: all that goes on while a seed learns, and the records of its steps until then, as many as a ledger has room for.
 //!
 //! | bytes of `checkpoint.bin` | hold |
 //! |---|---|
 //! | 8 | [`MAGIC`] |
-//! | | engine, digest of `run.toml`, seed, steps that were done, bytes of `steps.bin` that count, their digest, the state: see `engine::saved` |
+//! | | engine, digest of `run.toml`, seed, steps that were done, bytes of `steps.bin` that count, their digest, what goes on of the records after those, the state: see `engine::saved` |
 //! | 32 | SHA-256 of all before |
 //!
 //! `steps.bin` only grows, and `checkpoint.bin` is replaced as a whole after it: so whatever ends the run, the two fit, and the
@@ -26,7 +26,7 @@ pub const CHECKPOINT_FILE: &str = "checkpoint.bin";
 /// The name of the file of records.
 pub const STEPS_FILE: &str = "steps.bin";
 /// How the file of the state begins; the last digit is the format.
-const MAGIC: [u8; 8] = *b"engnckp1";
+const MAGIC: [u8; 8] = *b"engnckp2";
 /// The largest of the two that is read, bytes.
 const MOST_BYTES: u64 = 1 << 30;
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -86,6 +86,7 @@ impl CheckpointWriter {
         saving.whole(kept.steps);
         saving.whole(self.written as u64);
         saving.bytes(&self.hasher.clone().finalize());
+        saving.bytes(kept.tail);
         saving.bytes(kept.state);
         let mut bytes = [&MAGIC[..], &saving.into_bytes()].concat();
         let digest = Sha256::digest(&bytes);
@@ -101,11 +102,19 @@ pub struct StoredCheckpoint {
     pub state: Vec<u8>,
     /// Records of the steps.
     pub records: Vec<u8>,
+    /// What goes on of the records for which a ledger has no room.
+    pub tail: Vec<u8>,
     /// Steps that were done.
     pub steps: u64,
 }
 
 impl StoredCheckpoint {
+    /// As learning goes on from it.
+    #[must_use]
+    pub fn kept(&self) -> Kept<'_> {
+        Kept { state: &self.state, records: &self.records, tail: &self.tail, steps: self.steps }
+    }
+
     /// The checkpoint of a seed in a folder, if there is one; `run` is its `run.toml`.
     ///
     /// # Errors
@@ -130,7 +139,7 @@ impl StoredCheckpoint {
             records.truncate(usize::try_from(found.records).unwrap_or(usize::MAX));
             let fits = records.len() as u64 == found.records && Sha256::digest(&records)[..] == found.records_sha256;
             if fits {
-                return Ok(Some(Self { state: found.state, records, steps: found.steps }));
+                return Ok(Some(Self { state: found.state, records, tail: found.tail, steps: found.steps }));
             }
             format!("'{STEPS_FILE}' beside it is damaged")
         };
@@ -145,6 +154,7 @@ struct Found {
     steps: u64,
     records: u64,
     records_sha256: Vec<u8>,
+    tail: Vec<u8>,
     state: Vec<u8>,
 }
 
@@ -160,6 +170,7 @@ fn parse(bytes: &[u8]) -> std::result::Result<Found, Unfit> {
         steps: loading.whole()?,
         records: loading.whole()?,
         records_sha256: loading.bytes()?.to_vec(),
+        tail: loading.bytes()?.to_vec(),
         state: loading.bytes()?.to_vec(),
     };
     loading.end()?;
@@ -178,7 +189,7 @@ mod tests {
     fn kept(folder: &Path, records: &[u8]) -> CheckpointWriter {
         let mut writer = CheckpointWriter::new(folder, "run", 7, None).unwrap();
         for end in [1, records.len()] {
-            writer.keep(Kept { state: b"state", records: &records[..end], steps: end as u64 }).unwrap();
+            writer.keep(Kept { state: b"state", records: &records[..end], tail: b"", steps: end as u64 }).unwrap();
         }
         writer
     }
@@ -193,7 +204,7 @@ mod tests {
         let first = read();
         assert_eq!((first.records.as_slice(), first.steps, first.state.as_slice()), (&b"abc"[..], 3, &b"state"[..]));
         let mut writer = CheckpointWriter::new(folder.path(), "run", 7, Some(&first)).unwrap();
-        writer.keep(Kept { state: b"", records: b"abcxy", steps: 5 }).unwrap();
+        writer.keep(Kept { state: b"", records: b"abcxy", tail: b"", steps: 5 }).unwrap();
         assert_eq!(read().records, b"abcxy");
     }
 

@@ -57,7 +57,7 @@ fn with_steps(mut plan: Plan, steps: u64) -> Plan {
 /// # Errors
 /// If a run is missing or damaged, was not finished, or has other states, actions or another way of learning.
 pub fn going_on_from(plan: Plan, folder: &Path, seeds: &[u64], filters: &Arc<Catalogue>) -> Result<Plan> {
-    let many = seed_folders(folder);
+    let many = seed_folders(folder)?;
     if many.is_empty() || crate::disk::is_there(&folder.join(LOG_FILE))? {
         let origin = origin(&plan, folder, filters)?;
         return plan.going_on_from(vec![origin]);

@@ -12,7 +12,8 @@ mod used;
 
 pub use checkpoint::{CHECKPOINT_FILE, CheckpointWriter, STEPS_FILE, StoredCheckpoint};
 pub use going_on::going_on_from;
-pub use log::{LOG_FILE, MAGIC, RecordedRun, log_to_bytes, read_log};
+pub(crate) use log::settle;
+pub use log::{LOG_FILE, MAGIC, RecordedRun, SegmentWriter, is_segment_file, log_to_bytes, read_log, segment_file};
 pub use members::{PolicyText, policy_files, with_policies, with_policies_or, with_policy_texts};
 pub use parts::{RUN_FILE, SUMMARY_FILE, seed_folders};
 pub(crate) use parts::{TAG_FILE, check_policy, script_of};

@@ -1,12 +1,12 @@
 //! Whether the files of a run's folder belong together: each names the run that it belongs to by the digest of `run.toml`.
 
 use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use super::log::{LOG_FILE, log_names};
+use super::log::{LOG_FILE, LogEnd, log_names};
 use super::policy_file::POLICY_FILE;
 use super::read_stored;
 use crate::disk::is_there;
@@ -19,16 +19,27 @@ use engine::learner::Policy;
 pub const RUN_FILE: &str = "run.toml";
 /// The name of the file of figures.
 pub const SUMMARY_FILE: &str = "summary.json";
-/// The folders of the seeds of a run of many, in their order.
-#[must_use]
-pub fn seed_folders(folder: &Path) -> Vec<(u64, PathBuf)> {
-    let seed = |entry: std::fs::DirEntry| {
-        let seed = entry.file_name().to_str()?.parse().ok()?;
-        entry.path().join(RUN_FILE).is_file().then(|| (seed, entry.path()))
+/// The folders of the seeds of a run of many, in their order; none of a folder that is not there.
+///
+/// # Errors
+/// If it cannot be told what stands there.
+pub fn seed_folders(folder: &Path) -> Result<Vec<(u64, PathBuf)>> {
+    let disk = |error: std::io::Error| Box::new(Diagnostic::disk("read the folder", folder, &error));
+    let entries = match std::fs::read_dir(folder) {
+        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => return Ok(Vec::new()),
+        entries => entries.map_err(disk)?,
     };
-    let mut seeds: Vec<_> = std::fs::read_dir(folder).into_iter().flatten().flatten().filter_map(seed).collect();
+    let mut seeds = Vec::new();
+    for entry in entries {
+        let entry = entry.map_err(disk)?;
+        if let Some(seed) = entry.file_name().to_str().and_then(|name| name.parse().ok())
+            && is_there(&entry.path().join(RUN_FILE))?
+        {
+            seeds.push((seed, entry.path()));
+        }
+    }
     seeds.sort();
-    seeds
+    Ok(seeds)
 }
 
 /// Of the text of a `run.toml`: the behaviour, the seed and the path of its script; nothing if it is none.
@@ -140,11 +151,15 @@ fn of_log(path: &Path) -> Option<(String, String)> {
     let mut file = File::open(path).ok().filter(|file| file.metadata().is_ok_and(|data| data.is_file()))?;
     let mut start = Vec::new();
     (&mut file).take(MOST_HEADER_BYTES).read_to_end(&mut start).ok()?;
-    let (run, records) = log_names(&start)?;
-    let mut end = [0; DIGEST_BYTES];
-    if records > 0 {
-        file.seek(SeekFrom::End(-(DIGEST_BYTES as i64))).ok()?;
-        file.read_exact(&mut end).ok()?;
-    }
+    let (run, end) = log_names(&start)?;
+    let end = match end {
+        LogEnd::Known(end) => end,
+        LogEnd::OfFile => {
+            let mut end = [0; DIGEST_BYTES];
+            file.seek(SeekFrom::End(-(DIGEST_BYTES as i64))).ok()?;
+            file.read_exact(&mut end).ok()?;
+            end
+        }
+    };
     Some((run, hex(&end)))
 }

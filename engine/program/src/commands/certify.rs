@@ -5,6 +5,7 @@ use std::path::Path;
 use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::digest::Digest;
 use engine::experiment::{Asked, Certificate, DRAWS, Decider, Overrides, Plan, certify};
+use insight::disk::is_there;
 use insight::folder::{CERTIFICATE_FILE, CertificateFolder, certificate_lines, read_certificate};
 use insight::store::{POLICY_FILE, RUN_FILE, StoredRun, read_stored};
 
@@ -95,7 +96,7 @@ fn open(arguments: &CertifyArguments, set: &[String]) -> Result<Subject> {
 /// The digest of a run's policy; of a run that learned nothing, of its plan.
 fn digest_of(run: &Path) -> Result<Digest> {
     let policy = run.join(POLICY_FILE);
-    let said = if policy.exists() { policy } else { run.join(RUN_FILE) };
+    let said = if is_there(&policy)? { policy } else { run.join(RUN_FILE) };
     Ok(Digest::of(read_stored(&said)?.text.as_bytes()))
 }
 

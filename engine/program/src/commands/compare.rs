@@ -2,8 +2,8 @@
 
 use engine::diagnostic::Result;
 use insight::compare::{Comparison, Side, StateComparison, chance_words, compare_page};
-use insight::disk::write_atomic;
-use insight::folder::{create_folder, write_json};
+use insight::disk::{Together, write_atomic};
+use insight::folder::write_json;
 
 use super::sources::catalogue;
 use super::words::motion;
@@ -12,15 +12,16 @@ use crate::console::{Console, ConsoleError};
 
 /// States, settings and lines that a person is shown.
 const SHOWN: usize = 12;
+const PAGE: &str = "compare.html";
 
 pub(crate) fn run(arguments: &CompareArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
     let filters = catalogue(&arguments.filters)?;
     let sides = arguments.runs.iter().map(|run| Side::load(run, &filters)).collect::<Result<Vec<_>>>()?;
     let comparison = Comparison::new(&sides)?;
-    create_folder(&arguments.out)?;
-    let page = arguments.out.join("compare.html");
-    write_atomic(&page, compare_page(&comparison).as_bytes())?;
-    write_json(&arguments.out.join("compare.json"), &comparison)?;
+    let (together, page) = (Together::into(&arguments.out)?, arguments.out.join(PAGE));
+    write_atomic(&together.folder().join(PAGE), compare_page(&comparison).as_bytes())?;
+    write_json(&together.folder().join("compare.json"), &comparison)?;
+    together.commit()?;
     console.json(&comparison)?;
     print(console, &comparison)?;
     console.line(&format!("page:      {}", page.display()))?;

@@ -7,7 +7,8 @@ use engine::diagnostic::{Diagnostic, Result, all_codes, code_page, excerpt, near
 use engine::experiment::{
     FactReasons, GuardReasons, Phase, Plan, Playback, RuleReasons, RunLog, StepReasons, UseReasons,
 };
-use insight::folder::{ExplainedStep, Side, create_folder};
+use insight::disk::{Together, is_there};
+use insight::folder::{ExplainedStep, Side};
 use insight::store::{RecordedRun, StoredRun};
 use insight::words::short;
 use serde::Serialize;
@@ -45,7 +46,7 @@ struct FilterKept {
 pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
     let topic = arguments.topic.to_uppercase();
     let is_code = topic.starts_with("E-") || topic.starts_with("W-");
-    if is_code && !Path::new(&arguments.topic).exists() {
+    if is_code && !is_there(Path::new(&arguments.topic))? {
         if arguments.step.is_some() || arguments.test || arguments.out.is_some() {
             let error = Diagnostic::new("E-CODE", "the page of a code has no steps and no pictures");
             return Err(Box::new(error.help(format!("write: engine explain {}", printable(&topic)))).into());
@@ -63,7 +64,7 @@ pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::r
         true => (Phase::Test, &recorded.log.test, "test"),
     };
     let out = arguments.out.as_deref().unwrap_or(Path::new(&arguments.topic));
-    create_folder(out)?;
+    let together = Together::into(out)?;
     let mut playback = recalling(plan, *seed, phase, &recorded.log)?;
     playback.seek(step)?;
     let shown = ExplainedStep { phase, step };
@@ -78,8 +79,9 @@ pub(crate) fn run(arguments: &ExplainArguments, console: &mut Console) -> std::r
         let error = Diagnostic::new("E-LOG-DIFFERS", message);
         return Err(Box::new(error.help("find where it begins to differ: engine replay RUN --verify")).into());
     }
-    before.write(out, &shown.stem(Side::Before))?;
-    draw_step(shown, &playback, Side::After)?.write(out, &shown.stem(Side::After))?;
+    before.write(together.folder(), &shown.stem(Side::Before))?;
+    draw_step(shown, &playback, Side::After)?.write(together.folder(), &shown.stem(Side::After))?;
+    together.commit()?;
     let pictures =
         [Side::Before, Side::After].map(|side| out.join(format!("{}.png", shown.stem(side))).display().to_string());
     let (behaviour, world) = (plan.behaviour.name().to_owned(), plan.worlds.title());

@@ -11,8 +11,8 @@ use engine::sensors::observation::Image;
 use engine::sensors::{load_depth, load_photograph, photograph_files};
 use engine::settings::Settings;
 use engine::state::Grid;
-use insight::disk::{is_there, write_atomic};
-use insight::folder::{TEST_FILE, create_folder};
+use insight::disk::{Together, is_there, write_atomic};
+use insight::folder::TEST_FILE;
 use insight::page::mask_png;
 use insight::report::{FrameData, FramePanel, Picture, frame};
 use insight::store::{RUN_FILE, StoredRun};
@@ -73,7 +73,7 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
     let files = photograph_files(&arguments.image)?;
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(plan.behaviour.name()).join("filter"));
     check_no_run(&out)?;
-    create_folder(&out)?;
+    let together = Together::into(&out)?;
     keep_photographs(&files, &out)?;
     let (mut chain, mut grid) = (plan.chain()?, plan.grid()?);
     // Photographs are no drive: each is seen by filters that know what they knew when learning ended, or nothing.
@@ -88,10 +88,10 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
         chain.load(&kept)?;
         let state = grid.encode(chain.apply(&image).map_err(|error| failed(file, &error.message))?);
         let name = unused(file, &names);
-        draw_photograph(file, &image, &chain, &grid, state)?.write(&out, &name)?;
+        draw_photograph(file, &image, &chain, &grid, state)?.write(together.folder(), &name)?;
         let visits = met.as_ref().map(|policy| visits(policy, state));
-        let mask = out.join(format!("{name}-mask.png"));
-        write_atomic(&mask, &mask_png(chain.mask(), (image.width_px, image.height_px))?)?;
+        let mask = format!("{name}-mask.png");
+        write_atomic(&together.folder().join(&mask), &mask_png(chain.mask(), (image.width_px, image.height_px))?)?;
         let pixels = image.width_px * image.height_px;
         let patch = plan.patch(chain.mask());
         let seen = SeenImage {
@@ -102,7 +102,7 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
             cells: shares(&grid),
             size: patch.map_or(0.0, |(size, _)| size),
             bearing_deg: patch.map(|(_, bearing_deg)| bearing_deg),
-            mask: mask.display().to_string(),
+            mask: out.join(mask).display().to_string(),
             picture: out.join(format!("{name}.png")).display().to_string(),
             visits,
             share: visits.zip(met.as_ref()).map(|(visits, policy)| visits as f64 / all_visits(policy) as f64),
@@ -112,6 +112,7 @@ pub(crate) fn run(arguments: &FilterArguments, console: &mut Console) -> std::re
         names.push(name);
         all.push(seen);
     }
+    together.commit()?;
     console.json(&all)?;
     console.line(&format!("pictures: {}", out.display()))?;
     let alike = told_apart(&all, &grid, met.as_ref(), console)?;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::filter::LINKED_IN;
-use insight::disk::write_atomic;
+use insight::disk::{Together, is_there, write_atomic};
 use insight::folder::create_folder;
 
 use crate::cli::{NewArguments, NewCommand};
@@ -32,11 +32,13 @@ pub(crate) fn run(arguments: &NewArguments, console: &mut Console) -> std::resul
     let NewCommand::Filter { name, out } = &arguments.what;
     let folder = out.clone().unwrap_or_else(|| PathBuf::from(name));
     check_name(name, &folder)?;
+    let together = Together::into(&folder)?;
     for (path, text) in TEMPLATE {
-        let path = folder.join(path);
+        let path = together.folder().join(path);
         create_folder(path.parent().unwrap_or(&folder))?;
         write_atomic(&path, fill(text, name).as_bytes())?;
     }
+    together.commit()?;
     console.line(&format!("wrote the filter '{name}' to {}", folder.display()))?;
     console.line("next:")?;
     for step in ["cargo build --release", "engine plugins --filter-dir target/release"] {
@@ -65,7 +67,7 @@ fn check_name(name: &str, folder: &Path) -> Result<()> {
     if ["filter_api", "test", "core", "std", "alloc", "self", "super", "crate", "fn", "mod"].contains(&name) {
         return wrong(format!("'{shown}' means something else to cargo"), "choose another name");
     }
-    if folder.exists() {
+    if is_there(folder)? {
         let message = format!("'{}' exists already", printable(&folder.display().to_string()));
         return wrong(message, "choose another name, or another folder: --out DIR");
     }

@@ -5,20 +5,22 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use engine::diagnostic::{Diagnostic, nearest_name, printable};
-use insight::disk::write_atomic;
-use insight::folder::{create_folder, write_json};
+use insight::disk::{Together, write_atomic};
+use insight::folder::write_json;
 use paper::{CLAIMS, Campaign, Options, Reproduction, Verdict, figures, markdown, page, rows};
 
 use super::stop::{INTERRUPTED, on_ctrl_c};
 use crate::cli::ReproduceArguments;
 use crate::console::{Console, ConsoleError};
 
+const PAGE: &str = "reproduce.html";
+
 pub(crate) fn run(arguments: &ReproduceArguments, console: &mut Console) -> Result<u8, ConsoleError> {
     let started = Instant::now();
     for id in &arguments.only {
         known(id)?;
     }
-    create_folder(&arguments.out)?;
+    let together = Together::into(&arguments.out)?;
     let campaign = Campaign::new(Options {
         scripts: arguments.scripts.clone(),
         seed: arguments.seed,
@@ -48,9 +50,10 @@ pub(crate) fn run(arguments: &ReproduceArguments, console: &mut Console) -> Resu
     }
     let found = rows(&measured);
     let drawn = figures(&measured)?;
-    write_json(&arguments.out.join("reproduce.json"), &found)?;
-    let path = arguments.out.join("reproduce.html");
-    write_atomic(&path, page(&found, &drawn).as_bytes())?;
+    write_json(&together.folder().join("reproduce.json"), &found)?;
+    write_atomic(&together.folder().join(PAGE), page(&found, &drawn).as_bytes())?;
+    together.commit()?;
+    let path = arguments.out.join(PAGE);
     tell(arguments, console, &found, &path, steps)?;
     console.note(&format!("{steps} steps in {:.1} s", started.elapsed().as_secs_f64()));
     Ok(0)

@@ -7,7 +7,8 @@ use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::experiment::{Plan, Rescored, RuleChange, RuleScore, plan_with_rules_of, rescore};
 use engine::learner::Policy;
 use engine::script::Behaviour;
-use insight::folder::{create_folder, write_json};
+use insight::disk::Together;
+use insight::folder::write_json;
 use insight::report::{PolicyDiffData, PolicyState, StateChange, policy_diff};
 use insight::store::{RecordedRun, StoredRun};
 use insight::words::short;
@@ -137,8 +138,9 @@ fn entry(plan: &Plan, rescored: &Rescored, state: usize) -> Result<Option<Rescor
 }
 
 fn write(out: &Path, plan: &Plan, report: &RescoreReport) -> Result<()> {
-    create_folder(out)?;
-    write_json(&out.join("rescore.json"), report)?;
+    let together = Together::into(out)?;
+    let folder = together.folder();
+    write_json(&folder.join("rescore.json"), report)?;
     let state = |entry: &RescoredState, choice: &ChosenAction| PolicyState {
         state: entry.state,
         cells: entry.cells.clone(),
@@ -154,7 +156,8 @@ fn write(out: &Path, plan: &Plan, report: &RescoreReport) -> Result<()> {
     let states: Vec<StateChange> = report.states_changed.iter().map(change).collect();
     let title = format!("{}, seed {}, under {}", report.behaviour, report.seed, printable(&report.script));
     let (rows, columns) = plan.drawn_grid()?;
-    policy_diff(&PolicyDiffData { title: &title, rows, columns, states: &states })?.write(out, "policy-diff")
+    policy_diff(&PolicyDiffData { title: &title, rows, columns, states: &states })?.write(folder, "policy-diff")?;
+    together.commit()
 }
 
 fn print(

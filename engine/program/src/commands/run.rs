@@ -8,12 +8,12 @@ use std::time::Instant;
 
 use engine::diagnostic::{Diagnostic, Result};
 use engine::experiment::{
-    BrokenOff, Checkpoints, Kept, Overrides, Phase, Plan, Progress, RunLog, SeedRun, Spread, WINDOW_STEPS, can_be_kept,
+    BrokenOff, Checkpoints, Kept, Overrides, PassedOn, Phase, Plan, Progress, RunLog, SeedRun, Spread, WINDOW_STEPS,
     in_parallel, run_only_seed, run_seed_kept,
 };
-use insight::folder::{IfTaken, RunFolder, SeedResult, Unfinished};
+use insight::folder::{ALL_SEGMENTS, IfTaken, RunFolder, SeedResult, Unfinished};
 use insight::record::{check_recording, record};
-use insight::store::{CheckpointWriter, going_on_from, plan_of_run};
+use insight::store::{CheckpointWriter, StoredCheckpoint, going_on_from, plan_of_run};
 use insight::words::short;
 use pack::Runnable;
 
@@ -25,6 +25,9 @@ use super::stop::Stop;
 use crate::cli::RunArguments;
 use crate::console::{Console, ConsoleError};
 
+/// Steps from one checkpoint to the next, unless it is said.
+const CHECKPOINT_STEPS: u64 = 200_000;
+
 /// All that a run needs.
 struct Begun {
     runnable: Runnable,
@@ -32,6 +35,8 @@ struct Begun {
     folder: RunFolder,
     /// Steps from one checkpoint to the next.
     every: u64,
+    /// How many segments of the log are kept.
+    segments: u64,
     resumed: bool,
     branch: Option<Branch>,
 }
@@ -140,8 +145,16 @@ fn begin(arguments: &RunArguments, console: &Console) -> Result<Begun> {
     if folder.path() != wanted {
         console.note(&format!("'{}' holds another run, which stays: see 'results' below", wanted.display()));
     }
-    let runnable = Runnable { plan, unpacked };
-    Ok(Begun { runnable, seeds, folder, every: arguments.checkpoint, resumed: false, branch })
+    let (runnable, segments) = (Runnable { plan, unpacked }, arguments.log_segments.unwrap_or(ALL_SEGMENTS));
+    Ok(Begun {
+        runnable,
+        seeds,
+        folder,
+        every: arguments.checkpoint.unwrap_or(CHECKPOINT_STEPS),
+        segments,
+        resumed: false,
+        branch,
+    })
 }
 
 /// A run that was killed or stopped.
@@ -152,8 +165,16 @@ fn resume(place: &Path, arguments: &RunArguments) -> Result<Begun> {
     if let Some(path) = &arguments.record {
         check_record(path, &seeds)?;
     }
-    let runnable = Runnable { plan, unpacked: None };
-    Ok(Begun { runnable, seeds, folder, every: unfinished.every, resumed: true, branch: None })
+    let (runnable, segments) = (Runnable { plan, unpacked: None }, unfinished.segments);
+    Ok(Begun {
+        runnable,
+        seeds,
+        folder,
+        every: arguments.checkpoint.unwrap_or(unfinished.every),
+        segments,
+        resumed: true,
+        branch: None,
+    })
 }
 
 /// The seeds, from the first on.
@@ -197,12 +218,22 @@ impl InOrder {
 
 /// Refuses what only a behaviour that learns can do.
 fn check_learning(arguments: &RunArguments, plan: &Plan) -> Result<()> {
-    if plan.learns() || arguments.steps.is_none() {
-        return Ok(());
+    let combines = |what, help| {
+        let message = format!("'{}' combines policies: it {what}", plan.behaviour.name());
+        Diagnostic::new("E-COMBINES", message).help(help).fail()
+    };
+    match arguments {
+        _ if plan.learns() => Ok(()),
+        RunArguments { steps: Some(_), .. } => combines(
+            "takes no steps of learning",
+            "leave out --steps; --set run.test_steps=N sets the length of the test",
+        ),
+        RunArguments { checkpoint: Some(_), .. } => combines(
+            "learns nothing that a checkpoint could keep",
+            "leave out --checkpoint; a test that was killed is begun anew",
+        ),
+        _ => Ok(()),
     }
-    let message = format!("'{}' combines policies: it takes no steps of learning", plan.behaviour.name());
-    let help = "leave out --steps; --set run.test_steps=N sets the length of the test";
-    Diagnostic::new("E-COMBINES", message).help(help).fail()
 }
 
 fn record_run(every: u64, seed: u64, plan: &Plan, log: &RunLog, path: &Path, console: &Console) -> Result<()> {
@@ -285,13 +316,15 @@ fn learn_seed(
     report: &(dyn Fn(Progress) + Sync),
     log: &mut RunLog,
 ) -> Result<std::result::Result<SeedRun, Box<BrokenOff>>> {
-    let Begun { runnable: Runnable { plan, .. }, seeds, folder, every, resumed, .. } = begun;
+    let Begun { runnable: Runnable { plan, .. }, seeds, folder, every, segments, resumed, .. } = begun;
     let run_seed = if seeds.len() == 1 { run_only_seed } else { run_seed_kept };
-    if !can_be_kept(plan) {
+    if !plan.learns() {
         return Ok(run_seed(plan, seed, stop, report, log, Checkpoints::NONE));
     }
     let after = if *resumed { folder.checkpoint(plan, seed)? } else { None };
-    let unfinished = Unfinished { seed: seeds[0], seeds: seeds.len() as u64, every: *every };
+    let unfinished = Unfinished { seed: seeds[0], seeds: seeds.len() as u64, every: *every, segments: *segments };
+    let long = Mutex::new(folder.segments(plan, seed, *segments)?);
+    let segments = || long.lock().unwrap_or_else(PoisonError::into_inner);
     // Made with the first checkpoint: a short run has none.
     let writer: Mutex<Option<CheckpointWriter>> = Mutex::new(None);
     let keep = |kept: Kept<'_>| {
@@ -299,8 +332,10 @@ fn learn_seed(
         if writer.is_none() {
             *writer = Some(folder.keeper(plan, seed, after.as_ref())?);
         }
+        segments().sync()?;
         writer.as_mut().map_or(Ok(()), |writer| folder.keep_checkpoint(writer, kept, unfinished))
     };
-    let from = after.as_ref().map(|after| Kept { state: &after.state, records: &after.records, steps: after.steps });
-    Ok(run_seed(plan, seed, stop, report, log, Checkpoints { every: *every, from, keep: &keep }))
+    let from = after.as_ref().map(StoredCheckpoint::kept);
+    let take = |chunk: PassedOn<'_>| segments().take(chunk);
+    Ok(run_seed(plan, seed, stop, report, log, Checkpoints { every: *every, from, keep: &keep, take: &take }))
 }

@@ -5,7 +5,7 @@ use std::time::{Duration, SystemTime};
 
 use engine::diagnostic::printable;
 use insight::folder::remove_run;
-use insight::shelf::{ShelvedRun, runs_under, tag_run};
+use insight::shelf::{NotDone, ShelvedRun, runs_under, tag_run};
 
 use crate::cli::{RunsArguments, RunsCommand};
 use crate::console::{Console, ConsoleError};
@@ -30,6 +30,8 @@ pub(crate) fn run(arguments: &RunsArguments, console: &mut Console) -> Result<u8
             let runs = looked(folder, console)?;
             let going: Vec<ShelvedRun> = runs
                 .into_iter()
+                // Who waits to be gone on with is not pruned: `engine run --force` replaces it.
+                .filter(|run| !matches!(run.unfinished, Some(NotDone::Running(_) | NotDone::Killed)))
                 .filter(|run| run.tag.is_none() && (!failed || run.success != Some(true)))
                 .filter(|run| is_older(run, *older))
                 .collect();

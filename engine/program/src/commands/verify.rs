@@ -9,6 +9,7 @@ use engine::experiment::{
     Checkpoints, Decider, Learned, Overrides, Plan, RunLog, SeedRun, Spread, Summary, run_only_seed,
 };
 use engine::filter::Catalogue;
+use insight::disk::is_there;
 use insight::folder::{CURVE_FILE, DISAGREEMENTS_FILE, Redrawn, RunFolder, SeedResult, curve_of, disagreements_of};
 use insight::lint::check_behaviour_until;
 use insight::store::{
@@ -43,8 +44,8 @@ pub(super) fn verify(
     filters: &Arc<Catalogue>,
     console: &mut Console,
 ) -> std::result::Result<u8, ConsoleError> {
-    let (stop, seeds) = (on_ctrl_c()?, seed_folders(folder));
-    if seeds.is_empty() || folder.join(LOG_FILE).exists() {
+    let (stop, seeds) = (on_ctrl_c()?, seed_folders(folder)?);
+    if seeds.is_empty() || is_there(&folder.join(LOG_FILE))? {
         let Some(again) = verify_seed(folder, filters, &stop)? else { return Ok(INTERRUPTED) };
         let drawn = again.shown.map(|(plan, result)| compare_drawn(folder, &plan, &[result], &stop)).transpose()?;
         let drawn = with_explained(drawn, again.explained);
@@ -113,7 +114,7 @@ fn verify_seed(folder: &Path, filters: &Arc<Catalogue>, stop: &AtomicBool) -> Re
         None => Overrides::default(),
     };
     let plan = plan.clone().with_changes(&steps)?;
-    let mut again = RunLog::new(&plan);
+    let mut again = log.like(&plan);
     let (run, broken) = match run_only_seed(&plan, seed, stop, &|_| (), &mut again, Checkpoints::NONE) {
         Ok(run) => (Some(run), None),
         // A run that a failure ended fails again, at the same step.
@@ -137,7 +138,9 @@ fn verify_seed(folder: &Path, filters: &Arc<Catalogue>, stop: &AtomicBool) -> Re
     if let Some(table) = run.as_ref().and_then(|run| disagreements_of(&plan, &run.tested)) {
         compare_file(folder, DISAGREEMENTS_FILE, &table)?;
     }
-    let explained = redraw_steps(folder, &plan, seed, &again)?;
+    // Each step is the same in both; only the one that was recorded has those that were not kept in memory.
+    let recorded = if log.learning.has_no_end() { &log } else { &again };
+    let explained = redraw_steps(folder, &plan, seed, recorded)?;
     refuse_different(folder, &explained)?;
     let learned_hash = || learned.map_or_else(String::new, |learned| learned.state_hash.clone());
     let state_hash = run.as_ref().map_or_else(learned_hash, |run| run.summary.state_hash.clone());
@@ -160,7 +163,7 @@ fn verify_seed(folder: &Path, filters: &Arc<Catalogue>, stop: &AtomicBool) -> Re
 
 /// Draws pictures and pages again.
 fn compare_drawn(folder: &Path, plan: &Plan, results: &[SeedResult], stop: &AtomicBool) -> Result<Redrawn> {
-    let of_run = RunFolder::of_run(folder, !folder.join(LOG_FILE).exists());
+    let of_run = RunFolder::of_run(folder, !is_there(&folder.join(LOG_FILE))?);
     let checked = if of_run.shows_check() { check_behaviour_until(plan, 0, stop)? } else { None };
     let redrawn = of_run.redraw(plan, results, checked.as_ref())?;
     if !stop.load(Ordering::Relaxed) {
@@ -287,10 +290,11 @@ fn first_difference(place: &str, old: &Value, new: &Value) -> Option<(String, Va
 
 /// The table with all its fields, and the curve.
 fn compare_files(folder: &Path, plan: &Plan, learned: Option<&Learned>) -> Result<()> {
-    let (Some(learned), Ok(run)) = (learned, std::fs::read_to_string(folder.join(RUN_FILE))) else { return Ok(()) };
+    let Some(learned) = learned else { return Ok(()) };
+    let run = read_stored(&folder.join(RUN_FILE))?.text;
     compare_file(folder, POLICY_FILE, &policy_to_toml(plan, &learned.policy, Some(&run))?)?;
     // A run that a failure ended has no curve.
-    if !folder.join(CURVE_FILE).exists() && !folder.join(SUMMARY_FILE).exists() {
+    if !is_there(&folder.join(CURVE_FILE))? && !is_there(&folder.join(SUMMARY_FILE))? {
         return Ok(());
     }
     compare_file(folder, CURVE_FILE, &curve_of(plan, learned))

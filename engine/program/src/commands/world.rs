@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use engine::diagnostic::{Diagnostic, printable};
 use engine::world::{FAMILIES, FamilyRange};
-use insight::disk::write_atomic;
+use insight::disk::{is_there, write_atomic};
 
 use crate::cli::{WorldArguments, WorldCommand};
 use crate::console::{Console, ConsoleError};
@@ -14,7 +14,7 @@ pub(crate) fn run(arguments: &WorldArguments, console: &mut Console) -> Result<u
     let (name, text) = text_of(world)?;
     let path = out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.toml", name.replace(':', "-"))));
     let shown = path.display().to_string();
-    if path.exists() {
+    if is_there(&path)? {
         let error = Diagnostic::new("E-NEW", format!("'{}' exists already", printable(&shown)));
         return Err(Box::new(error.help("choose another file: --out FILE")).into());
     }

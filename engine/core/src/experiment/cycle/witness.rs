@@ -11,6 +11,7 @@ use crate::judge::{Judge, Look, NO_ACTION};
 use crate::learner::{Rejudged, Transition};
 use crate::outcome::Then;
 use crate::robot::Robot;
+use crate::saved::{Passed, Passing};
 
 /// What is said of one step by who judges along.
 #[derive(Debug, Clone, Copy)]
@@ -106,6 +107,17 @@ impl Witness {
         }
         let ended = self.last.is_some_and(|last| last.then.is_some()) || step.moves();
         self.goes_on = step.hands_over && !ended;
+    }
+
+    /// Passes what goes on from step to step; what it said of the last step is said anew of the next.
+    pub(super) fn pass(&mut self, world: usize, by: &mut Passing<'_>) -> Passed {
+        self.judge.go_to(world);
+        self.judge.pass(by)?;
+        by.number(&mut self.potential)?;
+        let mut said = std::mem::take(&mut self.said).into();
+        by.list(&mut said, |by: &mut Passing<'_>, said: &mut Rejudged| said.pass(by))?;
+        self.said = said.into();
+        by.flag(&mut self.goes_on)
     }
 
     /// By rule: what each added in the last step, if it fired.

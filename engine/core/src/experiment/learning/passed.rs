@@ -9,7 +9,7 @@ impl<R: Robot, L: Learner> Learning<R, L> {
     /// All that goes on, as bytes: the same plan and seed learn on from them as if nobody had looked.
     ///
     /// # Errors
-    /// If there is no such form of it: a robot that cannot be left, rules that judge along.
+    /// If there is no such form of it: a robot that cannot be left, a failure.
     pub fn save(&mut self) -> Result<Vec<u8>, Unfit> {
         let mut by = Passing::Out(Saving::default());
         self.pass(&mut by)?;
@@ -27,10 +27,11 @@ impl<R: Robot, L: Learner> Learning<R, L> {
     }
 
     fn pass(&mut self, by: &mut Passing<'_>) -> Passed {
-        if !self.used.is_empty() || self.fault.is_some() {
+        if self.fault.is_some() {
             return Err(Unfit);
         }
         self.cycle.pass(by)?;
+        self.used.pass(by)?;
         self.tally.pass(by)?;
         self.early.pass(by)?;
         self.hash.pass(by)?;

@@ -3,17 +3,30 @@
 //! A record says what was decided and why it was rewarded, not what was seen: frame, scan and mask come back exactly by
 //! driving the recorded actions again ([`super::Playback`]). Reading one: [`Ledger::record`] and [`Ledger::fired`].
 
+//! A ledger has room for [`MOST_STEPS`] records. Those of a longer run are passed on (`tail.rs`), and read back from where they
+//! were kept (`pages.rs`).
+
+mod pages;
+mod reading;
 mod record;
+mod tail;
 
+use std::borrow::Cow;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
+use super::run_log::{CHUNK_STEPS, DIGEST_BYTES, chained};
 use super::{Cycle, Observer, Plan, Step};
+use crate::diagnostic::Result;
 use crate::robot::Robot;
 
+use pages::Pages;
+pub use pages::StoredSegments;
 pub use record::{Attempt, Record, RecordShape};
-use record::{FIXED_BYTES, first_field};
+use tail::Tail;
+pub use tail::{PassedOn, Segment};
 
-/// The most steps that a ledger keeps: of a longer run it holds the beginning.
+/// The most steps that a ledger keeps in memory, and those of a segment of a log.
 pub const MOST_STEPS: u64 = 1 << 20;
 
 /// The records of one phase: learning, or a test. A run whose rules were swapped while it learned has a leg for each script.
@@ -29,6 +42,9 @@ pub struct Ledger {
     steps: u64,
     /// What the filters kept before the first step; empty if they began anew, or keep nothing.
     kept: Vec<u8>,
+    /// The records that come after, if there is no room for all.
+    tail: Tail,
+    pages: Option<Pages>,
 }
 
 /// The records of one leg.
@@ -67,7 +83,59 @@ impl Ledger {
     pub fn new(plan: &Plan, steps: u64) -> Self {
         let shape = RecordShape::of(plan);
         let most = steps.min(MOST_STEPS) as usize * shape.bytes();
-        Self { earlier: Vec::new(), first: 0, shape, bytes: Vec::with_capacity(most), most, steps: 0, kept: Vec::new() }
+        let empty = Self::from_leg(LedgerLeg { shape, bytes: Vec::with_capacity(most), steps: 0 });
+        Self { most, ..empty }
+    }
+
+    /// An empty ledger of a plan without earlier legs that has no end: what it has no room for is passed on.
+    #[must_use]
+    pub(super) fn without_end(plan: &Plan, steps: u64) -> Self {
+        let ledger = Self::new(plan, steps);
+        let more = steps.saturating_sub(MOST_STEPS);
+        if more == 0 { ledger } else { Self { tail: Tail::new(ledger.shape.bytes(), more), ..ledger } }
+    }
+
+    /// The same ledger after whose records these segments followed.
+    #[must_use]
+    pub fn followed_by(self, segments: Vec<Segment>) -> Self {
+        Self { tail: Tail::of(segments), ..self }
+    }
+
+    /// The same ledger with so many records of the segments that follow, which are read where they lie.
+    #[must_use]
+    pub fn with_pages(self, stored: Arc<dyn StoredSegments>, records: u64) -> Self {
+        Self { pages: Some(Pages::new(stored, records)), ..self }
+    }
+
+    /// The segments that follow what it holds itself.
+    #[must_use]
+    pub fn segments(&self) -> &[Segment] {
+        &self.tail.segments
+    }
+
+    /// Whether steps that it has no room for are in its digest.
+    #[must_use]
+    pub fn has_no_end(&self) -> bool {
+        self.tail.is_on()
+    }
+
+    /// How many steps can be done before records must be passed on.
+    pub(super) fn room(&self) -> u64 {
+        if !self.tail.is_on() {
+            return u64::MAX;
+        }
+        let bytes = self.shape.bytes();
+        ((self.most - self.bytes.len()) / bytes) as u64 + self.tail.room(bytes)
+    }
+
+    /// Passes on what it has no room for: whole chunks or, at the end, all.
+    ///
+    /// # Errors
+    /// What `to` fails with.
+    pub(super) fn pass_on(&mut self, at_the_end: bool, to: &mut dyn FnMut(PassedOn<'_>) -> Result<()>) -> Result<()> {
+        let (bytes, own) = (self.shape.bytes(), &self.bytes);
+        let first = || own.chunks(CHUNK_STEPS * bytes).fold([0; DIGEST_BYTES], |before, chunk| chained(&before, chunk));
+        self.tail.pass_on(bytes, first, at_the_end, to)
     }
 
     /// A ledger that keeps nothing.
@@ -88,7 +156,8 @@ impl Ledger {
     }
 
     fn from_leg(LedgerLeg { shape, bytes, steps }: LedgerLeg) -> Self {
-        Self { earlier: Vec::new(), first: 0, most: bytes.len(), shape, bytes, steps, kept: Vec::new() }
+        let (tail, pages) = (Tail::default(), None);
+        Self { earlier: Vec::new(), first: 0, most: bytes.len(), shape, bytes, steps, kept: Vec::new(), tail, pages }
     }
 
     /// Says what the filters kept before the first step, such as what a policy kept before its test.
@@ -108,6 +177,7 @@ impl Ledger {
         let records = self.bytes.len() / self.shape.bytes();
         let is_whole = records as u64 == self.steps;
         self.first += records;
+        self.tail = Tail::default();
         let room = if is_whole { MOST_STEPS.saturating_sub(self.first as u64) } else { 0 };
         self.most = steps.min(room) as usize * shape.bytes();
         let shape = std::mem::replace(&mut self.shape, shape);
@@ -121,10 +191,10 @@ impl Ledger {
         self.earlier.iter().map(|leg| leg.steps).sum::<u64>() + self.steps
     }
 
-    /// Steps that were done in the last leg, and how many of them it holds.
+    /// Steps that were done in the last leg, and how many of them it holds itself.
     #[must_use]
     pub fn last_leg(&self) -> (u64, usize) {
-        (self.steps, self.len() - self.first)
+        (self.steps, self.bytes.len() / self.shape.bytes())
     }
 
     /// The legs before the last one.
@@ -133,9 +203,14 @@ impl Ledger {
         &self.earlier
     }
 
-    /// How many records it holds.
+    /// How many records there are, from the first step on without a gap.
     #[must_use]
     pub fn len(&self) -> usize {
+        self.held() + self.pages.as_ref().map_or(0, Pages::len)
+    }
+
+    /// How many it holds itself.
+    fn held(&self) -> usize {
         self.first + self.bytes.len() / self.shape.bytes()
     }
 
@@ -172,9 +247,11 @@ impl Ledger {
     /// Adds the step that the cycle has just done; before any recovery.
     fn add<R: Robot>(&mut self, cycle: &Cycle<R>, step: &Step) {
         self.steps += 1;
-        if self.bytes.len() >= self.most {
-            return;
-        }
+        let to = match () {
+            () if self.bytes.len() < self.most => &mut self.bytes,
+            () if self.tail.is_on() => self.tail.waiting_mut(),
+            () => return,
+        };
         let (robot, facts) = (cycle.robot(), cycle.facts());
         let (here, nearest_beam) = (robot.whereabouts().unwrap_or_default(), facts.nearest_beam());
         let record = Record {
@@ -196,34 +273,50 @@ impl Ledger {
             nearest_m: facts.ranges_m.get(nearest_beam).copied().unwrap_or(0.0),
             coverage: cycle.coverage() as f32,
         };
-        self.bytes.extend_from_slice(&record.to_bytes());
-        self.add_fired(cycle.fired());
+        to.extend_from_slice(&record.to_bytes());
+        add_fired(&self.shape, cycle.fired(), to);
         if self.shape.varies() {
             let attempt = [robot.world_index() as u32, u32::from(step.hop)].map(u32::to_le_bytes);
-            self.bytes.extend_from_slice(attempt.as_flattened());
-            robot.drawn().iter().for_each(|drawn| self.bytes.extend_from_slice(&drawn.to_le_bytes()));
+            to.extend_from_slice(attempt.as_flattened());
+            robot.drawn().iter().for_each(|drawn| to.extend_from_slice(&drawn.to_le_bytes()));
         }
     }
 
-    /// The records of the last leg as they are stored, and the steps that were done in it.
+    /// All records as they are stored, those of each leg after those of the one before.
     #[must_use]
-    pub fn stored(&self) -> (&[u8], u64) {
-        (&self.bytes, self.steps)
+    pub fn stored(&self) -> Cow<'_, [u8]> {
+        if self.earlier.is_empty() {
+            return Cow::Borrowed(&self.bytes);
+        }
+        Cow::Owned(self.legs().flat_map(|(_, bytes)| bytes).copied().collect())
     }
 
-    /// Goes on after records of the same plan that were stored, see [`Ledger::stored`]. False if they do not fit: then it is
-    /// as it was.
+    /// Goes on after the records of so many steps of its leg, which stand at the front of `records`, see [`Ledger::stored`].
+    /// False if they do not fit: then it is as it was.
     #[must_use]
-    pub fn go_on_after(&mut self, records: &[u8], steps: u64) -> bool {
-        let whole = records.len().is_multiple_of(self.shape.bytes());
-        let done = (records.len() / self.shape.bytes()) as u64;
-        let fits = whole && self.is_empty() && records.len() <= self.most && done <= steps;
-        if fits && (done == steps || records.len() == self.most) {
-            self.bytes.extend_from_slice(records);
-            self.steps = steps;
-            return true;
+    pub(super) fn take_up(&mut self, records: &mut &[u8], steps: u64) -> bool {
+        let wanted = steps.saturating_mul(self.shape.bytes() as u64).min(self.most as u64);
+        let Some((own, rest)) = records.split_at_checked(wanted as usize).filter(|_| self.bytes.is_empty()) else {
+            return false;
+        };
+        self.bytes.extend_from_slice(own);
+        (self.steps, *records) = (steps, rest);
+        true
+    }
+
+    /// What a checkpoint needs besides the records that it holds itself; empty if it holds all.
+    pub(super) fn stored_tail(&self) -> Vec<u8> {
+        if self.tail.is_empty() { Vec::new() } else { self.tail.save() }
+    }
+
+    /// Goes on with what follows the records that it took up, see [`Ledger::stored_tail`]; whether that fits.
+    #[must_use]
+    pub(super) fn take_up_tail(&mut self, tail: &[u8]) -> bool {
+        let after = self.steps - self.last_leg().1 as u64;
+        match tail.is_empty() {
+            true => after == 0 || !self.tail.is_on(),
+            false => self.tail.is_on() && self.tail.load(tail, self.shape.bytes(), after).is_ok(),
         }
-        false
     }
 
     /// Forgets all records; their room is kept.
@@ -231,86 +324,17 @@ impl Ledger {
         self.bytes.clear();
         self.steps = 0;
     }
+}
 
-    /// The first step, with its first field, in which two ledgers differ; nothing if they are the same bit for bit.
-    #[must_use]
-    pub fn first_difference(&self, other: &Self) -> Option<(usize, &'static str)> {
-        let mut steps = 0..self.len().max(other.len());
-        let found = steps.find_map(|step| Some((step, self.field_that_differs(step, other, step)?)));
-        found.or_else(|| (self.steps() != other.steps()).then_some((self.len(), "number of steps")))
+fn add_fired(shape: &RecordShape, fired: &[Option<f64>], to: &mut Vec<u8>) {
+    for chunk in fired.chunks(64) {
+        let set = chunk.iter().enumerate().fold(0_u64, |set, (bit, value)| set | u64::from(value.is_some()) << bit);
+        to.extend_from_slice(&set.to_le_bytes());
     }
-
-    /// The first field in which a step differs from a step of another ledger.
-    pub(super) fn field_that_differs(&self, step: usize, other: &Self, other_step: usize) -> Option<&'static str> {
-        match (self.record_bytes(step), other.record_bytes(other_step)) {
-            (Some(own), Some(others)) if own == others => None,
-            (Some(own), Some(others)) => {
-                let at = own.iter().zip(others).position(|(a, b)| a != b).unwrap_or(own.len());
-                Some(first_field(at, self.leg_of(step).0))
-            }
-            (None, None) => None,
-            _ => Some("number of steps"),
+    for (value, fixed) in fired.iter().zip(shape.values()) {
+        if fixed.is_none() {
+            to.extend_from_slice(&value.unwrap_or(0.0).to_le_bytes());
         }
-    }
-
-    fn add_fired(&mut self, fired: &[Option<f64>]) {
-        for chunk in fired.chunks(64) {
-            let set = chunk.iter().enumerate().fold(0_u64, |set, (bit, value)| set | u64::from(value.is_some()) << bit);
-            self.bytes.extend_from_slice(&set.to_le_bytes());
-        }
-        for (value, fixed) in fired.iter().zip(self.shape.values()) {
-            if fixed.is_none() {
-                self.bytes.extend_from_slice(&value.unwrap_or(0.0).to_le_bytes());
-            }
-        }
-    }
-
-    /// The bytes of one record.
-    #[must_use]
-    pub fn record_bytes(&self, step: usize) -> Option<&[u8]> {
-        let (shape, bytes, step) = self.leg_of(step);
-        bytes.get(step * shape.bytes()..)?.get(..shape.bytes())
-    }
-
-    /// One step's record.
-    #[must_use]
-    pub fn record(&self, step: usize) -> Option<Record> {
-        Some(Record::from_bytes(self.record_bytes(step)?.first_chunk()?))
-    }
-
-    /// What was drawn for the attempt of a step; nothing in a run that does not vary.
-    #[must_use]
-    pub fn attempt(&self, step: usize) -> Option<Attempt> {
-        self.leg_of(step).0.attempt(self.record_bytes(step)?)
-    }
-
-    /// The number of the world in which a step was done.
-    #[must_use]
-    pub fn world(&self, step: usize) -> usize {
-        self.attempt(step).map_or(0, |attempt| attempt.world)
-    }
-
-    /// Every record, first to last.
-    pub fn records(&self) -> impl Iterator<Item = Record> + '_ {
-        let records = self.legs().flat_map(|(shape, bytes)| bytes.chunks_exact(shape.bytes()));
-        records.filter_map(|bytes| bytes.first_chunk()).map(Record::from_bytes)
-    }
-
-    /// The rules that fired in one step, by their number in the script of its leg, each with what it added.
-    pub fn fired(&self, step: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let shape = self.leg_of(step).0;
-        let tail = self.record_bytes(step).and_then(|bytes| bytes.get(FIXED_BYTES..)).unwrap_or_default();
-        let (words, own) = tail.split_at((8 * shape.words()).min(tail.len()));
-        let mut own = own.chunks_exact(8);
-        let rules = if tail.is_empty() { &[] } else { shape.values() };
-        rules.iter().enumerate().filter_map(move |(rule, fixed)| {
-            let value = match fixed {
-                Some(value) => *value,
-                None => f64::from_le_bytes(own.next()?.try_into().ok()?),
-            };
-            let set = words.get(rule / 8).copied().unwrap_or(0);
-            (set >> (rule % 8) & 1 == 1).then_some((rule, value))
-        })
     }
 }
 

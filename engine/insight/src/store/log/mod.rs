@@ -9,7 +9,11 @@
 //! | 32 | SHA-256 of all before |
 //! | chunks | up to 1,024 records of learning, then 32 bytes: SHA-256 of the digest of the chunk before and these records; each leg begins a chunk of its own; the test follows in the same way |
 //!
-//! The format is 1, 2 if there are earlier legs, and 3 of a run in several worlds or with values that are drawn for each attempt,
+//! A run of more than 1,048,576 steps of learning has the steps after these in segments: files of their own, see `segments.rs`. The
+//! header then has `segments`, in their order: how many records each has, the digest of its last chunk, and whether it was `kept`.
+//! The chain of digests goes from the chunks of learning here through those of all segments to the test.
+//!
+//! The format is 1, 2 if there are earlier legs, 4 if there are segments, and 3 of a run in several worlds or with values that are drawn for each attempt,
 //! with legs or without. A swap is so an event in the log: it comes after as many steps as the
 //! legs before it have; what became of the table stands with the script in `run.toml`.
 //!
@@ -22,17 +26,21 @@
 //! and an 8-byte float for each value that is drawn.
 
 mod read;
+mod segments;
 mod stored;
+mod stored_segments;
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
 use engine::diagnostic::{Diagnostic, Result};
-use engine::digest::hex;
+use engine::digest::{Digest, hex};
 use engine::experiment::{Ledger, Plan, RunLog};
 
-pub(super) use read::log_names;
 pub use read::read_log;
+pub(super) use read::{LogEnd, log_names};
+pub(crate) use segments::settle;
+pub use segments::{SegmentWriter, is_segment_file, segment_file};
 pub use stored::RecordedRun;
 
 /// The name of the file in a run's folder.
@@ -44,6 +52,8 @@ const FORMAT: u32 = 1;
 const FORMAT_OF_LEGS: u32 = 2;
 /// The format of a log whose records hold the world and what was drawn.
 const FORMAT_OF_WORLDS: u32 = 3;
+/// The format of a log with segments, in several worlds or in one.
+const FORMAT_OF_SEGMENTS: u32 = 4;
 /// Magic, format, length of the header.
 const PREFIX_BYTES: usize = 16;
 
@@ -60,7 +70,18 @@ struct Header {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     earlier: Vec<LogLegEntry>,
     learning: PhaseEntry,
+    /// What of learning follows in files of its own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    segments: Vec<SegmentEntry>,
     test: PhaseEntry,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SegmentEntry {
+    records: u64,
+    sha256: Digest,
+    kept: bool,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -103,14 +124,21 @@ impl RuleEntry {
 
 /// The whole file of the log of a run whose `run.toml` has the text `run`.
 ///
+/// Of the segments that follow, the first `kept` are there.
+///
 /// # Errors
 /// Never in practice: only if the header cannot be written as JSON.
-pub fn log_to_bytes(log: &RunLog, plan: &Plan, seed: u64, run: &str) -> Result<Vec<u8>> {
+pub fn log_to_bytes(log: &RunLog, plan: &Plan, seed: u64, run: &str, kept: u64) -> Result<Vec<u8>> {
     let legs = plan.earlier.iter().zip(log.learning.earlier());
     let earlier = legs.map(|(leg, records)| LogLegEntry {
         record_bytes: records.shape.bytes(),
         rules: RuleEntry::all(&leg.plan),
         learning: PhaseEntry { steps: records.steps, records: records.len() },
+    });
+    let segments = (1..).zip(log.learning.segments()).map(|(number, segment)| SegmentEntry {
+        records: segment.records,
+        sha256: Digest::from(segment.digest),
+        kept: number <= kept,
     });
     let header = Header {
         engine: env!("CARGO_PKG_VERSION").to_owned(),
@@ -120,10 +148,12 @@ pub fn log_to_bytes(log: &RunLog, plan: &Plan, seed: u64, run: &str) -> Result<V
         record_bytes: log.learning.shape().bytes(),
         rules: RuleEntry::all(plan),
         earlier: earlier.collect(),
+        segments: segments.collect(),
         learning: PhaseEntry::of_last_leg(&log.learning),
         test: PhaseEntry::of_last_leg(&log.test),
     };
     let format = match header.earlier.is_empty() {
+        _ if !header.segments.is_empty() => FORMAT_OF_SEGMENTS,
         _ if plan.varies() => FORMAT_OF_WORLDS,
         true => FORMAT,
         false => FORMAT_OF_LEGS,

@@ -1,10 +1,17 @@
 //! A log file read back: nothing in it is believed before it is checked.
 
-use super::{FORMAT, FORMAT_OF_LEGS, FORMAT_OF_WORLDS, Header, MAGIC, PREFIX_BYTES, PhaseEntry, RuleEntry, damaged};
+use std::path::Path;
+
+use super::segments::are_possible;
+use super::stored_segments::{Whose, attach};
+use super::{
+    FORMAT, FORMAT_OF_LEGS, FORMAT_OF_SEGMENTS, FORMAT_OF_WORLDS, Header, MAGIC, PREFIX_BYTES, PhaseEntry, RuleEntry,
+    SegmentEntry, damaged,
+};
 use engine::diagnostic::{Diagnostic, Result, printable};
 use engine::digest::Digest;
 use engine::experiment::{
-    CHUNK_STEPS, DIGEST_BYTES, Ledger, LedgerLeg, MOST_STEPS, Plan, Record, RecordShape, RunLog, chained,
+    CHUNK_STEPS, DIGEST_BYTES, Ledger, LedgerLeg, MOST_STEPS, Plan, Record, RecordShape, RunLog, Segment, chained,
 };
 
 /// Reads the bytes of a log that must belong to a plan under a seed, whose `run.toml` has the text `run`.
@@ -13,6 +20,29 @@ use engine::experiment::{
 /// `E-LOG-FILE` if the file is no log, of another format, cut, changed, or holds what the plan cannot have done;
 /// `E-LOG-RUN` if it belongs to another run.
 pub fn read_log(bytes: &[u8], plan: &Plan, seed: u64, run: &str) -> Result<RunLog> {
+    read_checked(bytes, plan, seed, run).map(|(log, _)| log)
+}
+
+/// Reads the bytes of a log as [`read_log`], and then the segments that lie beside it, which become part of it.
+///
+/// # Errors
+/// As [`read_log`], of the segments too.
+pub(super) fn read_whole(folder: &Path, bytes: &[u8], plan: &Plan, seed: u64, run: &str) -> Result<RunLog> {
+    let (log, Follow { kept, before, run_sha256 }) = read_checked(bytes, plan, seed, run)?;
+    let whose = Whose { run_sha256: &run_sha256, seed, possible: &Possible::of(plan)? };
+    Ok(RunLog { learning: attach(folder, log.learning, kept, before, &whose)?, ..log })
+}
+
+/// What is known of the segments that follow.
+struct Follow {
+    /// How many of them are there, from the first on.
+    kept: usize,
+    /// The digest before them.
+    before: [u8; DIGEST_BYTES],
+    run_sha256: String,
+}
+
+fn read_checked(bytes: &[u8], plan: &Plan, seed: u64, run: &str) -> Result<(RunLog, Follow)> {
     let (header, body) = header(bytes)?;
     if header.run_sha256 != Digest::of(run.as_bytes()).to_string() || header.seed != seed {
         let message =
@@ -26,7 +56,13 @@ pub fn read_log(bytes: &[u8], plan: &Plan, seed: u64, run: &str) -> Result<RunLo
     let stretches = stretches(&header, plan)?;
     check_length(&stretches, body)?;
     let (mut before, mut rest, mut legs) = ([0; DIGEST_BYTES], body, Vec::new());
+    let mut before_segments = before;
+    let segments = segments(&header)?;
     for RecordStretch { name, phase, shape } in stretches {
+        if name == TEST {
+            before_segments = before;
+            before = segments.last().map_or(before, |last| last.digest);
+        }
         let bytes = phase_records(&mut rest, phase, shape.bytes(), &mut before, name)?;
         legs.push(LedgerLeg { shape, bytes, steps: phase.steps });
     }
@@ -34,10 +70,29 @@ pub fn read_log(bytes: &[u8], plan: &Plan, seed: u64, run: &str) -> Result<RunLo
     let Some((learning, test)) = Ledger::from_legs(legs).zip(test) else {
         return damaged("the log's counts do not fit its records".to_owned()).fail();
     };
+    let learning = if segments.is_empty() { learning } else { learning.followed_by(segments) };
     let log = RunLog { learning, test };
-    check_records(&log, plan)?;
-    Ok(log)
+    let possible = Possible::of(plan)?;
+    for (name, ledger) in [(LEARNING, &log.learning), (TEST, &log.test)] {
+        possible.check(ledger, 0, name)?;
+    }
+    let kept = header.segments.iter().take_while(|segment| segment.kept).count();
+    Ok((log, Follow { kept, before: before_segments, run_sha256: header.run_sha256 }))
 }
+
+/// The segments that follow the records of learning, which must be as many as a log has room for.
+fn segments(header: &Header) -> Result<Vec<Segment>> {
+    let of = |entry: &SegmentEntry| Segment { records: entry.records, digest: *entry.sha256.bytes() };
+    let segments: Vec<Segment> = header.segments.iter().map(of).collect();
+    let more: u64 = segments.iter().map(|segment| segment.records).fold(0, u64::saturating_add);
+    let PhaseEntry { steps, records } = header.learning;
+    let whole = records as u64 == MOST_STEPS && more.checked_add(MOST_STEPS) == Some(steps);
+    let fit = segments.is_empty() || whole && header.earlier.is_empty() && are_possible(&segments);
+    if fit { Ok(segments) } else { damaged("the log's segments do not fit its steps".to_owned()).fail() }
+}
+
+const LEARNING: &str = "learning";
+const TEST: &str = "the test";
 
 /// Records that lie in one way, one after the other.
 struct RecordStretch {
@@ -62,10 +117,10 @@ fn stretches(header: &Header, plan: &Plan) -> Result<Vec<RecordStretch>> {
     }
     let mut all = Vec::new();
     for (entry, leg) in legs() {
-        all.push(stretch("learning", &leg.plan, &entry.rules, entry.record_bytes, entry.learning)?);
+        all.push(stretch(LEARNING, &leg.plan, &entry.rules, entry.record_bytes, entry.learning)?);
     }
-    all.push(stretch("learning", plan, &header.rules, header.record_bytes, header.learning)?);
-    all.push(stretch("the test", plan, &header.rules, header.record_bytes, header.test)?);
+    all.push(stretch(LEARNING, plan, &header.rules, header.record_bytes, header.learning)?);
+    all.push(stretch(TEST, plan, &header.rules, header.record_bytes, header.test)?);
     Ok(all)
 }
 
@@ -77,8 +132,9 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8])> {
     if bytes[..8] != MAGIC {
         return damaged("this file is not a log of a run".to_owned()).fail();
     }
-    if ![FORMAT, FORMAT_OF_LEGS, FORMAT_OF_WORLDS].contains(&format) {
-        let message = format!("the log has format {format}, this engine reads formats {FORMAT} to {FORMAT_OF_WORLDS}");
+    if ![FORMAT, FORMAT_OF_LEGS, FORMAT_OF_WORLDS, FORMAT_OF_SEGMENTS].contains(&format) {
+        let message =
+            format!("the log has format {format}, this engine reads formats {FORMAT} to {FORMAT_OF_SEGMENTS}");
         let error = Diagnostic::new("E-LOG-FILE", message);
         return error.help("read it with the engine that wrote it, or run the behaviour again").fail();
     }
@@ -91,17 +147,33 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8])> {
     }
     let header: Header = serde_json::from_slice(&all_before[PREFIX_BYTES..])
         .map_err(|error| Box::new(damaged(format!("the log's header cannot be read: {error}"))))?;
-    if format != FORMAT_OF_WORLDS && header.earlier.is_empty() != (format == FORMAT) {
+    if header.segments.is_empty() != (format != FORMAT_OF_SEGMENTS) {
+        return damaged(format!("a log of format {format} cannot have {} segments", header.segments.len())).fail();
+    }
+    if format < FORMAT_OF_WORLDS && header.earlier.is_empty() != (format == FORMAT) {
         return damaged(format!("a log of format {format} cannot have {} earlier legs", header.earlier.len())).fail();
     }
     Ok((header, &bytes[end + DIGEST_BYTES..]))
 }
 
-/// The run that a log names, and how many records it holds, from the beginning of its file; nothing if that is no log.
-pub(in crate::store) fn log_names(start: &[u8]) -> Option<(String, usize)> {
+/// The run that a log names, and where its last digest stands, from the beginning of its file; nothing if that is no log.
+pub(in crate::store) fn log_names(start: &[u8]) -> Option<(String, LogEnd)> {
     let (header, _) = header(start).ok()?;
     let earlier: usize = header.earlier.iter().map(|leg| leg.learning.records).sum();
-    Some((header.run_sha256, earlier + header.learning.records + header.test.records))
+    let end = match (header.segments.last(), header.test.records, earlier + header.learning.records) {
+        (Some(last), 0, _) => LogEnd::Known(*last.sha256.bytes()),
+        (_, test, learning) if test + learning > 0 => LogEnd::OfFile,
+        _ => LogEnd::Known([0; DIGEST_BYTES]),
+    };
+    Some((header.run_sha256, end))
+}
+
+/// Where the digest of a log's last chunk stands.
+pub(in crate::store) enum LogEnd {
+    /// At the end of the file.
+    OfFile,
+    /// It is known from the header.
+    Known([u8; DIGEST_BYTES]),
 }
 
 /// Bytes of a phase's chunks with their digests; nothing if no file can be so long.
@@ -155,37 +227,46 @@ fn phase_records(
     Ok(records)
 }
 
-/// A checksum can be made to fit: what is used as a number of a state, an action or a beam must be one.
-fn check_records(log: &RunLog, plan: &Plan) -> Result<()> {
-    let (states, actions) = (plan.state_map()?.states(), plan.motions().len());
-    let beams = plan.settings.laser.beams as usize;
-    let is_possible = |record: &Record| {
+/// What the numbers of a record can be: a checksum can be made to fit, and what is used as a number of a state, an action or a beam
+/// must be one.
+pub(super) struct Possible {
+    states: usize,
+    actions: usize,
+    beams: usize,
+    worlds: usize,
+}
+
+impl Possible {
+    pub(super) fn of(plan: &Plan) -> Result<Self> {
+        let (states, actions) = (plan.state_map()?.states(), plan.motions().len());
+        Ok(Self { states, actions, beams: plan.settings.laser.beams as usize, worlds: plan.worlds.layouts().len() })
+    }
+
+    fn holds(&self, record: &Record) -> bool {
         let prey = record.prey.unwrap_or_default();
         let wide = [record.reward, record.pose.x_m, record.pose.y_m, record.pose.yaw_rad];
         let narrow = [record.z_m, record.nearest_m, record.coverage, prey[0], prey[1], prey[2]];
-        (record.state as usize) < states
-            && (record.next_state as usize) < states
-            && usize::from(record.action) < actions
-            && usize::from(record.nearest_beam) < beams
-            && record.beam.is_none_or(|beam| usize::from(beam) < beams)
+        (record.state as usize) < self.states
+            && (record.next_state as usize) < self.states
+            && usize::from(record.action) < self.actions
+            && usize::from(record.nearest_beam) < self.beams
+            && record.beam.is_none_or(|beam| usize::from(beam) < self.beams)
             && wide.iter().all(|number| number.is_finite())
             && narrow.iter().all(|number| number.is_finite())
-    };
-    let worlds = plan.worlds.layouts().len();
-    let was_there = |ledger: &Ledger, step: usize| {
-        ledger
-            .attempt(step)
-            .is_none_or(|attempt| attempt.world < worlds && attempt.drawn.iter().all(|drawn| drawn.is_finite()))
-    };
-    for (name, ledger) in [("learning", &log.learning), ("the test", &log.test)] {
-        let wrong = ledger.records().enumerate().find(|(step, record)| {
-            !is_possible(record)
-                || !ledger.fired(*step).all(|(_, value)| value.is_finite())
-                || !was_there(ledger, *step)
-        });
-        if let Some((step, _)) = wrong {
-            return damaged(format!("step {step} of {name} in the log is not one that the run can have done")).fail();
-        }
     }
-    Ok(())
+
+    /// Checks the records of a ledger, the first of which is that of the step `first`.
+    pub(super) fn check(&self, ledger: &Ledger, first: u64, name: &str) -> Result<()> {
+        let was_there = |step: usize| {
+            ledger.attempt(step).is_none_or(|attempt| {
+                attempt.world < self.worlds && attempt.drawn.iter().all(|drawn| drawn.is_finite())
+            })
+        };
+        let wrong = ledger.records().enumerate().find(|(step, record)| {
+            !self.holds(record) || !ledger.fired(*step).all(|(_, value)| value.is_finite()) || !was_there(*step)
+        });
+        let Some((step, _)) = wrong else { return Ok(()) };
+        let step = first + step as u64;
+        damaged(format!("step {step} of {name} in the log is not one that the run can have done")).fail()
+    }
 }

@@ -4,7 +4,8 @@ use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::{LOG_FILE, damaged, read_log};
+use super::read::read_whole;
+use super::{LOG_FILE, damaged};
 use crate::disk::{is_there, read_file};
 use crate::store::{SUMMARY_FILE, StoredRun, check_policy, read_stored};
 use engine::diagnostic::{Diagnostic, Result};
@@ -34,7 +35,7 @@ impl RecordedRun {
         let (stored, run) = StoredRun::read(folder, filters)?;
         let path = folder.join(LOG_FILE);
         let bytes = read_bytes(&path)?;
-        let mut log = read_log(&bytes, &stored.plan, stored.seed, &run.text).map_err(|mut error| {
+        let mut log = read_whole(folder, &bytes, &stored.plan, stored.seed, &run.text).map_err(|mut error| {
             error.message = format!("'{}': {}", path.display(), error.message);
             error
         })?;

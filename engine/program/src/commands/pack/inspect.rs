@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use engine::diagnostic::{Result, printable};
+use insight::disk::is_there;
 use insight::folder::certificate_lines;
 use pack::{Evidence, Manifest, PACK_ENDING, Pack, Signature, fingerprint, key_id};
 use serde_json::{Value, json};
@@ -46,7 +47,7 @@ pub(super) fn inspect(arguments: &InspectArguments, console: &mut Console) -> st
 }
 
 fn open(argument: &Path) -> Result<(Pack, Option<Signature>)> {
-    let is_file = argument.exists() || argument.extension().is_some_and(|ending| ending == PACK_ENDING);
+    let is_file = is_there(argument)? || argument.extension().is_some_and(|ending| ending == PACK_ENDING);
     if !is_file
         && let (Some(text), Ok(places)) = (argument.to_str(), Places::find())
         && let Some(locked) = places.locked(text)?

@@ -4,7 +4,7 @@ use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use engine::diagnostic::{Diagnostic, Result};
-use insight::disk::write_atomic;
+use insight::disk::{is_there, write_atomic};
 use pack::{Pack, Password, key_id, key_line, needs_password, new_keys};
 use serde_json::json;
 
@@ -14,10 +14,12 @@ use crate::console::{Console, ConsoleError};
 
 pub(super) fn keygen(arguments: &KeygenArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
     let [secret, public] = ["key", "pub"].map(|ending| with_ending(&arguments.name, ending));
-    if let Some(taken) = [&secret, &public].into_iter().find(|path| path.exists()) {
-        let message = format!("'{}' is there already, and a lost key cannot be made again", taken.display());
-        let error = Diagnostic::new("E-PACK-KEY-USE", message).help("give another name");
-        return Err(Box::new(error).into());
+    for path in [&secret, &public] {
+        if is_there(path)? {
+            let message = format!("'{}' is there already, and a lost key cannot be made again", path.display());
+            let error = Diagnostic::new("E-PACK-KEY-USE", message).help("give another name");
+            return Err(Box::new(error).into());
+        }
     }
     let password = if arguments.no_password { Password::None } else { password(arguments.password_stdin)? };
     let [secret_text, public_text] = new_keys(password)?;

@@ -107,7 +107,7 @@ fn a_swapped_run_comes_back_from_its_folder() {
     let table = policy_to_toml(&plan, &learned.policy, Some(&run)).unwrap();
     std::fs::write(folder.join("policy.toml"), table).unwrap();
     let stored = StoredRun::load(&folder).unwrap();
-    let file = log_to_bytes(&log, &plan, SEED, &run).unwrap();
+    let file = log_to_bytes(&log, &plan, SEED, &run, 0).unwrap();
     assert_eq!(file[8], 2);
     assert_eq!(read_log(&file, &stored.plan, SEED, &run).unwrap(), log);
     // Learned again from what the folder says.

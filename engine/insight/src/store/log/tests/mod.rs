@@ -42,7 +42,7 @@ static SAMPLE: LazyLock<Sample> = LazyLock::new(|| {
     let learned = learn_into(&plan, SEED, &stop, &|_| (), &mut learning).unwrap();
     test_and_watch(&plan, &learned.policy, SEED, &stop, &mut test).unwrap();
     let log = RunLog { learning, test };
-    let file = log_to_bytes(&log, &plan, SEED, RUN).unwrap();
+    let file = log_to_bytes(&log, &plan, SEED, RUN, 0).unwrap();
     Sample { plan, log, file }
 });
 
@@ -87,7 +87,7 @@ fn a_log_comes_back_as_it_was_written() {
 #[test]
 fn a_log_that_holds_only_the_beginning_of_a_run_knows_how_long_the_run_was() {
     let learning = ledger(bytes_of(&SAMPLE.log.learning), 9_000_000);
-    let file = log_to_bytes(&RunLog { learning, test: SAMPLE.log.test.clone() }, &SAMPLE.plan, SEED, RUN).unwrap();
+    let file = log_to_bytes(&RunLog { learning, test: SAMPLE.log.test.clone() }, &SAMPLE.plan, SEED, RUN, 0).unwrap();
     let read = read(&file).unwrap().learning;
     assert_eq!((read.len(), read.steps()), (1200, 9_000_000));
 }
@@ -127,7 +127,7 @@ fn a_changed_record_is_named_by_its_steps() {
 fn another_format_is_said_with_both_numbers() {
     let mut file = SAMPLE.file.clone();
     file[8] = 9;
-    assert_eq!(message(&file), "the log has format 9, this engine reads formats 1 to 3");
+    assert_eq!(message(&file), "the log has format 9, this engine reads formats 1 to 4");
 }
 
 #[test]
@@ -157,7 +157,7 @@ fn a_state_that_the_grid_does_not_have_is_refused_even_with_a_checksum_that_fits
     bytes[88 * 7 + 32..][..4].copy_from_slice(&64_u32.to_le_bytes());
     let test = ledger(bytes, 40);
     let log = RunLog { learning: SAMPLE.log.learning.clone(), test };
-    let file = log_to_bytes(&log, &SAMPLE.plan, SEED, RUN).unwrap();
+    let file = log_to_bytes(&log, &SAMPLE.plan, SEED, RUN, 0).unwrap();
     assert_eq!(message(&file), "step 7 of the test in the log is not one that the run can have done");
 }
 
@@ -184,7 +184,7 @@ proptest! {
     ) {
         let test = ledger(bytes, 3);
         let log = RunLog { learning: SAMPLE.log.learning.clone(), test };
-        let file = log_to_bytes(&log, &SAMPLE.plan, SEED, RUN).unwrap();
+        let file = log_to_bytes(&log, &SAMPLE.plan, SEED, RUN, 0).unwrap();
         if let Ok(read) = read(&file) {
             prop_assert_eq!(read.sha256(), log.sha256());
         }
