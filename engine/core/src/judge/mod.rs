@@ -4,8 +4,10 @@
 //! judging of it: counters, and what was calibrated. Conditions and values are small native trees; what was not understood
 //! is left to the interpreter, inside limits that are counted, never timed.
 
+pub(crate) mod budget;
 mod calibrated;
 pub(crate) mod compiled;
+mod equality;
 pub(crate) mod evaluate;
 pub(crate) mod explain;
 pub(crate) mod expression;
