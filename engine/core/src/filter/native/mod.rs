@@ -3,9 +3,13 @@
 //! Without the cargo feature `native-filters` every library is refused.
 
 #[cfg(feature = "native-filters")]
+mod guarded;
+#[cfg(feature = "native-filters")]
 mod library;
 #[cfg(feature = "native-filters")]
 mod loaded;
+#[cfg(feature = "native-filters")]
+mod rounding;
 #[cfg(feature = "native-filters")]
 mod wire;
 #[cfg(feature = "native-filters")]
