@@ -33,7 +33,7 @@ type Files = BTreeMap<String, Vec<u8>>;
 /// # Errors
 /// If the folder is there already, the script is wrong, a native filter is not allowed, or a file cannot be written.
 pub fn scaffold(name: &PackName, folder: &Path, from: Option<(&Path, Sources)>) -> Result<()> {
-    if folder.exists() {
+    if insight::disk::is_there(folder)? {
         let message = format!("'{}' is there already", printable(&folder.display().to_string()));
         return Diagnostic::new("E-PACK-FOLDER", message).help("choose another with --out FOLDER").fail();
     }

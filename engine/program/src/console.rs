@@ -81,8 +81,7 @@ impl Console {
     pub(crate) fn error(&mut self, error: &Diagnostic, colour: bool) {
         let _ = self.out.flush();
         let colour = colour && std::env::var_os("NO_COLOR").is_none() && std::env::var("TERM").as_deref() != Ok("dumb");
-        let text =
-            if self.json { for_json(&error.to_json().to_string()).into_owned() } else { error.render(colour) };
+        let text = if self.json { for_json(&error.to_json().to_string()).into_owned() } else { error.render(colour) };
         self.note(text.trim_end());
     }
 

@@ -58,9 +58,6 @@ fn maps(context: &NativeCallContext<'_>, a: &mut Map, b: &mut Map) -> Evaluated<
 /// Whether two values are equal; what the language has no `==` for is not.
 fn values(context: &NativeCallContext<'_>, a: &mut Dynamic, b: &mut Dynamic) -> Evaluated<bool> {
     budget::spend(COMPARING)?;
-    if let (Ok(a), Ok(b)) = (a.as_float(), b.as_float()) {
-        return Ok(a == b);
-    }
     if let (Ok(a), Ok(b)) = (a.as_int(), b.as_int()) {
         return Ok(a == b);
     }

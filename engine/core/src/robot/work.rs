@@ -28,7 +28,8 @@ const HEADINGS: u32 = 8;
 pub(super) fn check(site: &Site) -> Result<()> {
     if site.camera.lacks_shadows() {
         let name = printable(&site.world.layout().name);
-        let message = format!("the shadows of the world '{name}' are too much to compute: large solids that shade one another");
+        let message =
+            format!("the shadows of the world '{name}' are too much to compute: large solids that shade one another");
         let help = "take out solids that stand within one another, make them smaller, or leave light.shadows off";
         return Diagnostic::new("E-WORLD-SHADOWS", message).help(help).fail();
     }

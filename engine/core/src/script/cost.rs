@@ -3,10 +3,10 @@
 use super::Behaviour;
 use super::rehearsal::place;
 use crate::diagnostic::Diagnostic;
+use crate::judge::budget;
 use crate::judge::evaluate::Present;
 use crate::judge::rule::{Clause, CompiledRule};
 use crate::judge::sandbox::MAX_OPERATIONS;
-use crate::judge::budget;
 use crate::settings::Settings;
 use std::ops::Range;
 

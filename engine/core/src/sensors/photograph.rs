@@ -91,6 +91,14 @@ pub fn load_photograph(path: &Path, width_px: usize, height_px: usize) -> Result
     Ok(scaled(&decoded(path)?.into_rgb8(), width_px, height_px))
 }
 
+/// As [`load_photograph`], of the bytes of a file that is called so.
+///
+/// # Errors
+/// Those of [`load_photograph`].
+pub fn photograph_of(path: &Path, bytes: &[u8], width_px: usize, height_px: usize) -> Result<Image> {
+    Ok(scaled(&decode(path, bytes)?.into_rgb8(), width_px, height_px))
+}
+
 /// The pixels of a file, turned upright.
 pub(super) fn decoded(path: &Path) -> Result<DynamicImage> {
     let bytes = read(path)?;
@@ -153,7 +161,11 @@ fn check_decoded(path: &Path, bytes: &[u8], decoder: &impl ImageDecoder) -> Resu
     let eight_bits = if decoder.color_type() == ColorType::Rgb8 { 0 } else { 3 * pixels };
     let decoded = decoder.total_bytes().saturating_add(eight_bits);
     if decoded > MAX_DECODED_BYTES {
-        let found = format!("{} MB once it is decoded, where {} MB are allowed", decoded / 1_000_000, MAX_DECODED_BYTES / 1_000_000);
+        let found = format!(
+            "{} MB once it is decoded, where {} MB are allowed",
+            decoded / 1_000_000,
+            MAX_DECODED_BYTES / 1_000_000
+        );
         return too_large(path, &found).fail();
     }
     if pixels > MAX_PROGRESSIVE_PIXELS && is_progressive(bytes) {

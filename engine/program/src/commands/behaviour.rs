@@ -4,6 +4,7 @@ use std::path::Path;
 
 use engine::diagnostic::{Diagnostic, Result, SourceText};
 use engine::experiment::{Overrides, Plan};
+use insight::disk::is_there;
 use insight::store::{POLICY_FILE, PolicyText, RUN_FILE, policy_to_toml, run_to_toml, with_policies_or};
 use pack::{Evidence, Locked, PACK_ENDING, Pack, PackName, Runnable, draft};
 
@@ -64,7 +65,7 @@ pub(super) fn open_to_look(
 
 /// The pack that an argument means, and what it builds on; nothing if it means something else.
 pub(super) fn open_pack(argument: &Path, allow_unsigned: bool) -> Result<Option<(Pack, Vec<Pack>)>> {
-    let pack = if argument.is_dir() && argument.join(AUTHOR_FILE).exists() {
+    let pack = if argument.is_dir() && is_there(&argument.join(AUTHOR_FILE))? {
         draft(argument)?
     } else if argument.extension().is_some_and(|ending| ending == PACK_ENDING) {
         let pack = Pack::load(argument)?;

@@ -65,7 +65,7 @@ fn check_name(name: &str, folder: &Path) -> Result<()> {
     if ["filter_api", "test", "core", "std", "alloc", "self", "super", "crate", "fn", "mod"].contains(&name) {
         return wrong(format!("'{shown}' means something else to cargo"), "choose another name");
     }
-    if folder.exists() {
+    if insight::disk::is_there(folder)? {
         let message = format!("'{}' exists already", printable(&folder.display().to_string()));
         return wrong(message, "choose another name, or another folder: --out DIR");
     }

@@ -9,6 +9,7 @@ use engine::experiment::{
     Checkpoints, Decider, Learned, Overrides, Plan, RunLog, SeedRun, Spread, Summary, run_only_seed,
 };
 use engine::filter::Catalogue;
+use insight::disk::is_there;
 use insight::folder::{CURVE_FILE, DISAGREEMENTS_FILE, Redrawn, RunFolder, SeedResult, curve_of, disagreements_of};
 use insight::lint::check_behaviour_until;
 use insight::store::{
@@ -44,7 +45,7 @@ pub(super) fn verify(
     console: &mut Console,
 ) -> std::result::Result<u8, ConsoleError> {
     let (stop, seeds) = (on_ctrl_c()?, seed_folders(folder));
-    if seeds.is_empty() || folder.join(LOG_FILE).exists() {
+    if seeds.is_empty() || is_there(&folder.join(LOG_FILE))? {
         let Some(again) = verify_seed(folder, filters, &stop)? else { return Ok(INTERRUPTED) };
         let drawn = again.shown.map(|(plan, result)| compare_drawn(folder, &plan, &[result], &stop)).transpose()?;
         let drawn = with_explained(drawn, again.explained);
@@ -160,7 +161,7 @@ fn verify_seed(folder: &Path, filters: &Arc<Catalogue>, stop: &AtomicBool) -> Re
 
 /// Draws pictures and pages again.
 fn compare_drawn(folder: &Path, plan: &Plan, results: &[SeedResult], stop: &AtomicBool) -> Result<Redrawn> {
-    let of_run = RunFolder::of_run(folder, !folder.join(LOG_FILE).exists());
+    let of_run = RunFolder::of_run(folder, !is_there(&folder.join(LOG_FILE))?);
     let checked = if of_run.shows_check() { check_behaviour_until(plan, 0, stop)? } else { None };
     let redrawn = of_run.redraw(plan, results, checked.as_ref())?;
     if !stop.load(Ordering::Relaxed) {
@@ -291,7 +292,7 @@ fn compare_files(folder: &Path, plan: &Plan, learned: Option<&Learned>) -> Resul
     let (Some(learned), Ok(run)) = (learned, std::fs::read_to_string(folder.join(RUN_FILE))) else { return Ok(()) };
     compare_file(folder, POLICY_FILE, &policy_to_toml(plan, &learned.policy, Some(&run))?)?;
     // A run that a failure ended has no curve.
-    if !folder.join(CURVE_FILE).exists() && !folder.join(SUMMARY_FILE).exists() {
+    if !is_there(&folder.join(CURVE_FILE))? && !is_there(&folder.join(SUMMARY_FILE))? {
         return Ok(());
     }
     compare_file(folder, CURVE_FILE, &curve_of(plan, learned))

@@ -14,7 +14,7 @@ pub(crate) fn run(arguments: &WorldArguments, console: &mut Console) -> Result<u
     let (name, text) = text_of(world)?;
     let path = out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.toml", name.replace(':', "-"))));
     let shown = path.display().to_string();
-    if path.exists() {
+    if insight::disk::is_there(&path)? {
         let error = Diagnostic::new("E-NEW", format!("'{}' exists already", printable(&shown)));
         return Err(Box::new(error.help("choose another file: --out FILE")).into());
     }

@@ -216,9 +216,8 @@ impl Native {
         let Some(function) = self.whole.and_then(|whole| whole.load) else { return Ok(()) };
         let mut message = ForeignText::default();
         // SAFETY: as in `save`.
-        let status = rounding::kept(|| unsafe {
-            function(self.instance, kept.as_ptr(), kept.len() as u32, message.pointer())
-        });
+        let status =
+            rounding::kept(|| unsafe { function(self.instance, kept.as_ptr(), kept.len() as u32, message.pointer()) });
         message.outcome(status)
     }
 

@@ -20,6 +20,8 @@ mod worker;
 #[cfg(not(feature = "native-filters"))]
 mod without;
 
+#[cfg(feature = "native-filters")]
+pub use wire::count_replies;
 #[cfg(not(feature = "native-filters"))]
 pub(super) use without::open;
 #[cfg(not(feature = "native-filters"))]

@@ -99,14 +99,23 @@ pub(super) fn read_reply(from: &mut impl Read) -> Result<Reply> {
     if length > LONGEST_PAYLOAD_BYTES || status > 2 {
         return Err(Error::new(ErrorKind::InvalidData, "not a reply"));
     }
-    let mut payload = vec![0; length];
-    from.read_exact(&mut payload)?;
+    // What a worker promises takes no memory before it comes.
+    let mut payload = Vec::new();
+    if from.by_ref().take(length as u64).read_to_end(&mut payload)? < length {
+        return Err(ErrorKind::UnexpectedEof.into());
+    }
     let words = |payload: Vec<u8>| String::from_utf8_lossy(&payload).into_owned();
     Ok(match status {
         0 => Reply::Done(payload),
         1 => Reply::Failed(words(payload)),
         _ => Reply::Panicked(words(payload)),
     })
+}
+
+/// How many replies stand in bytes that a worker may have sent, up to the first that is none.
+#[must_use]
+pub fn count_replies(mut bytes: &[u8]) -> usize {
+    std::iter::from_fn(|| read_reply(&mut bytes).ok()).count()
 }
 
 /// What a filter did with a call.
@@ -185,7 +194,8 @@ fn process(
     let to = FrameMut::new(width, height, writes, output.pixels_mut()).map_err(|error| invalid(error.0))?;
     let done = instance.process(frame, to);
     let overrun = output.overrun().map(|place| format!("it wrote outside of the frame that it is to fill, {place}"));
-    let overrun = overrun.or_else(|| input.overrun().map(|place| format!("it wrote beside the frame that it reads, {place}")));
+    let overrun =
+        overrun.or_else(|| input.overrun().map(|place| format!("it wrote beside the frame that it reads, {place}")));
     Ok(overrun.map_or(done, |words| Err(Failure { panicked: true, words })))
 }
 

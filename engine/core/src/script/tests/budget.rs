@@ -80,7 +80,11 @@ fn equality_is_what_the_language_says_it_is() {
     };
     assert!(holds("[1, 2] == [1, 2]") && holds("[1, 2.0] == [1.0, 2]") && holds("[] == []"));
     assert!(holds("[1, 2] != [1, 3]") && holds("[1] != [1, 1]") && holds("[1, \"a\"] != [1, 2]"));
-    assert!(holds("#{ a: [1] } == #{ a: [1] }") && holds("#{ a: 1 } != #{ b: 1 }") && holds("#{ a: 1 } != #{ a: \"1\" }"));
+    assert!(
+        holds("#{ a: [1] } == #{ a: [1] }") && holds("#{ a: 1 } != #{ b: 1 }") && holds("#{ a: 1 } != #{ a: \"1\" }")
+    );
     assert!(holds("2 in [1, 2]") && holds("[1, [2]].contains([2])") && holds("!([1, 2].contains(\"2\"))"));
     assert!(holds("[true, \"x\"] == [true, \"x\"]"));
+    // Numbers that differ by rounding only are equal, in arrays too.
+    assert!(holds("0.1 + 0.2 == 0.3") && holds("[0.1 + 0.2] == [0.3]") && holds("0.3 in [0.1 + 0.2]"));
 }

@@ -4,7 +4,7 @@ use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use engine::diagnostic::{Diagnostic, Result};
-use insight::disk::write_atomic;
+use insight::disk::{is_there, write_atomic};
 use pack::{Pack, Password, key_id, key_line, needs_password, new_keys};
 use serde_json::json;
 
@@ -14,7 +14,8 @@ use crate::console::{Console, ConsoleError};
 
 pub(super) fn keygen(arguments: &KeygenArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
     let [secret, public] = ["key", "pub"].map(|ending| with_ending(&arguments.name, ending));
-    if let Some(taken) = [&secret, &public].into_iter().find(|path| path.exists()) {
+    let there = [is_there(&secret)?, is_there(&public)?];
+    if let Some((taken, _)) = [&secret, &public].into_iter().zip(there).find(|(_, there)| *there) {
         let message = format!("'{}' is there already, and a lost key cannot be made again", taken.display());
         let error = Diagnostic::new("E-PACK-KEY-USE", message).help("give another name");
         return Err(Box::new(error).into());
@@ -47,8 +48,11 @@ pub(super) fn sign(arguments: &SignArguments, console: &mut Console) -> std::res
 }
 
 pub(super) fn trust(arguments: &TrustArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
+    if let Some(said) = &arguments.said {
+        return super::statements::take(said, console);
+    }
     let places = Places::find()?;
-    let TrustArguments { owner, key, replace, revoke } = arguments;
+    let TrustArguments { owner, key, replace, revoke, .. } = arguments;
     let _held = key.as_ref().map(|_| places.hold_trust()).transpose()?;
     let mut store = places.trust()?;
     match (owner, key) {
@@ -59,6 +63,15 @@ pub(super) fn trust(arguments: &TrustArguments, console: &mut Console) -> std::r
             }
             for known in store.keys() {
                 console.line(&format!("{:20} {}  {}", known.owner, key_id(&known.key)?, known.key))?;
+            }
+            for old in store.retired() {
+                let (id, by) = (key_id(&old.key)?, key_id(&old.by)?);
+                console.line(&format!("{:20} {id}  handed over to {by} on {}", old.owner, old.date))?;
+            }
+            for list in store.lists() {
+                let keys = list.keys.len();
+                console
+                    .line(&format!("{:20} list {} of {} revokes {keys} keys", list.owner, list.number, list.date))?;
             }
         }
         (_, Some(key)) if *revoke => {
@@ -91,7 +104,7 @@ fn with_ending(name: &Path, ending: &str) -> PathBuf {
 }
 
 /// A password from the terminal, or from standard input if that was asked for.
-fn password(from_input: bool) -> Result<Password> {
+pub(super) fn password(from_input: bool) -> Result<Password> {
     if from_input {
         let mut line = String::new();
         std::io::stdin()

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use engine::diagnostic::Diagnostic;
 use engine::experiment::{Progress, WINDOW_STEPS};
-use insight::disk::write_atomic;
+use insight::disk::{is_there, write_atomic};
 use pack::{Pack, PackName, draft, scaffold};
 use serde_json::json;
 
@@ -75,7 +75,7 @@ pub(super) fn build(arguments: &BuildArguments, console: &mut Console) -> Result
 fn write_pack(path: &Path, pack: &Pack) -> engine::diagnostic::Result<()> {
     let signature = super::places::signature_path(path);
     let same = std::fs::read(path).is_ok_and(|bytes| bytes == pack.bytes());
-    if !same && signature.exists() {
+    if !same && is_there(&signature)? {
         std::fs::remove_file(&signature).map_err(|error| Box::new(Diagnostic::disk("remove", &signature, &error)))?;
     }
     write_atomic(path, pack.bytes())

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use engine::diagnostic::{Diagnostic, Result, printable};
-use insight::disk::write_atomic;
+use insight::disk::{is_there, write_atomic};
 use insight::folder::create_folder;
 use pack::{Pack, Signature};
 use serde_json::json;
@@ -59,7 +59,7 @@ fn store(pack: &Pack, signature: Option<&Signature>, folder: &Path) -> Result<Pa
     match signature {
         Some(signature) => write_atomic(&beside, signature.text().as_bytes())?,
         // The signature of another build would make this one look changed.
-        None if beside.exists() => {
+        None if is_there(&beside)? => {
             std::fs::remove_file(&beside).map_err(|error| Box::new(Diagnostic::disk("remove", &beside, &error)))?;
         }
         None => {}
