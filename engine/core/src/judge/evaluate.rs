@@ -12,7 +12,7 @@ use super::running;
 use super::views::{AllFacts, SeenView, number, view};
 use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
 use crate::outcome::{Destination, Then};
-use rhai::{CallFnOptions, Dynamic, EvalAltResult, Map, Position, Scope, Stmt};
+use rhai::{CallFnOptions, Dynamic, EvalAltResult, Map, Position, Scope};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -89,7 +89,7 @@ impl Present {
     fn run(&self, script: &ScriptClause) -> Result<Dynamic> {
         let compiled = &*self.compiled;
         let mut scope = Scope::new();
-        let place = script.ast.statements().first().map_or(Position::NONE, Stmt::position);
+        let place = script.ast.statements().first().map_or(Position::NONE, |first| first.position());
         let copied = |value: &Dynamic| {
             budget::spend_values(budget::size(value)).map_err(|mut error| {
                 error.set_position(place);
