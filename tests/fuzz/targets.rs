@@ -118,7 +118,7 @@ pub(crate) fn pack(bytes: &[u8]) {
 
 /// What the worker of an isolated filter answers.
 pub(crate) fn wire(bytes: &[u8]) {
-    engine::filter::count_replies(bytes);
+    let _ = engine::filter::count_replies(bytes);
 }
 
 /// A PNG or JPEG file.
@@ -153,7 +153,7 @@ pub(crate) fn corpus(name: &str) -> Vec<Vec<u8>> {
         let Ok(entries) = std::fs::read_dir(root().join(folder)) else { continue };
         files.extend(entries.filter_map(|entry| Some(entry.ok()?.path())));
     }
-    files.retain(|path| path.is_file() && !path.extension().is_some_and(|ending| ending == "md"));
+    files.retain(|path| path.is_file() && path.extension().is_none_or(|ending| ending != "md"));
     files.sort();
     let read = files.iter().map(|path| std::fs::read(path).unwrap());
     read.chain(made(name)).collect()

@@ -18,7 +18,7 @@ fn refused(text: &str) -> Diagnostic {
 
 /// Loops of which each turn was a handful of operations, whatever it copied or compared.
 fn dear() -> Vec<String> {
-    let same = |what: &str| format!("if {} {{ k += 1; }}", vec![what; 12].join(" && "));
+    let same = |what: &str| format!("if {} {{ k += 1; }}", [what; 12].join(" && "));
     vec![
         endless(TABLE, "let c = a; c.push(1.0); k += 1;"),
         endless(TABLE, &same("a == b")),
