@@ -13,7 +13,7 @@ use filter_api::Format;
 
 /// Rows of faces, runs of pixels, beams held against solids: of one image and one scan together. A look of so much work
 /// takes some 15 ms on a slow machine; those of the shipped worlds take a hundredth of it.
-const MOST_WORK: u64 = 1_500_000;
+const MOST_WORK: u64 = 500_000;
 /// Worlds of fewer solids than these are looked at from nowhere before they are driven in: they cannot be too much.
 const FEW_SOLIDS: usize = 200;
 /// After so much work a world has been looked at enough beforehand.
