@@ -42,6 +42,8 @@ mod filters;
 mod fooled;
 /// One filter gives the same bytes linked in, in a native library and in WebAssembly.
 mod forms;
+/// Every reader of strangers' bytes, over a corpus and mutants of it.
+mod fuzzed;
 /// Every shipped behaviour leaves the bytes that were recorded.
 mod golden;
 /// Scripts that ask for too much: refused, or within their limits.

@@ -7,6 +7,7 @@ use engine::sensors::observation::Image;
 use engine::settings::FilterSettings;
 
 use crate::support::filters::catalogue;
+use crate::support::mutate::mutate;
 use crate::support::{Bench, root};
 
 /// How long any module may take to be loaded, tried and used for one frame.
@@ -279,29 +280,10 @@ fn a_failure_of_a_module_is_exit_status_4_of_the_program() {
     assert!(text.starts_with("exit status 4\nerror[E-WASM-FUEL]") && text.contains("mine.rhai:2"), "{text}");
 }
 
-/// Changes a few bytes: half of the time in place only, so that many stay modules, or else also removed, put in or
-/// repeated from elsewhere.
-fn mutate(random: &mut Random, bytes: &mut Vec<u8>) {
-    let ways = if random.below(2) == 0 { 2 } else { 5 };
-    for _ in 0..1 + random.below(ways) {
-        let at = random.below(bytes.len() as u32) as usize;
-        match random.below(ways) {
-            0 => bytes[at] = random.below(256) as u8,
-            1 => bytes[at] ^= 1 << random.below(8),
-            2 => drop(bytes.drain(at..(at + 1 + random.below(8) as usize).min(bytes.len()))),
-            3 => bytes.insert(at, random.below(256) as u8),
-            _ => {
-                let end = (at + 1 + random.below(16) as usize).min(bytes.len());
-                let piece = bytes[at..end].to_vec();
-                let to = random.below(bytes.len() as u32) as usize;
-                bytes.splice(to..to, piece);
-            }
-        }
-        if bytes.len() < 16 {
-            bytes.resize(16, 0);
-        }
-    }
-    // Most of them shall get further than the first check.
+/// A damaged module; most of them shall get further than the first check.
+fn damaged(random: &mut Random, bytes: &mut Vec<u8>) {
+    mutate(random, bytes);
+    bytes.resize(bytes.len().max(16), 0);
     bytes[..8].copy_from_slice(b"\0asm\x01\0\0\0");
 }
 
@@ -313,7 +295,7 @@ fn a_damaged_module_is_refused_or_works_and_never_takes_long() {
     let (mut slowest, mut codes) = (Duration::ZERO, std::collections::BTreeMap::new());
     for index in 0..count {
         let mut bytes = whole.clone();
-        mutate(&mut random, &mut bytes);
+        damaged(&mut random, &mut bytes);
         let started = worked();
         let code = tried(&bytes).map_or_else(|error| error.code, |_| "works");
         let took = worked() - started;

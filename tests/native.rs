@@ -237,6 +237,36 @@ fn an_end_at_the_first_frame_is_contained() {
 }
 
 #[test]
+fn a_worker_says_which_law_a_filter_broke() {
+    let past = "((volatile uint8_t *)output->pixels)[(size_t)output->stride_bytes * output->height_px + 8] = 7";
+    let before = "((volatile uint8_t *)output->pixels)[-5] = 7";
+    let faults = [
+        (past, "frame 0: it wrote outside of the frame that it is to fill, 8 bytes past the end"),
+        (before, "frame 0: it wrote outside of the frame that it is to fill, 5 bytes before its beginning"),
+        ("exit(0)", "frame 0: its worker ended (exit status: 0): it left the program by itself, as with exit()"),
+    ];
+    for (fault, words) in faults {
+        let flag = format!("-DBEFORE_FRAME={fault};");
+        let Some(breaks) = Hostile::c("bright", &[&flag, "-include", "stdlib.h"]) else { return };
+        expect(&mut breaks.run(true), 4, &["error[E-FILTER-CRASH]", "'bright'", words]);
+    }
+    let threads = Hostile::c("threads", &[]).unwrap();
+    let words = "frame 0: it started 1 threads that still run after the call";
+    expect(&mut threads.run(true), 4, &["error[E-FILTER-CRASH]", "'threads'", words]);
+}
+
+#[test]
+#[cfg(target_arch = "x86_64")]
+fn a_filter_that_rounds_otherwise_changes_nothing_else() {
+    let Some(plain) = Hostile::c("bright", &[]) else { return };
+    // Flushes small numbers to 0 and rounds upwards, from its first frame on.
+    let other = "-DBEFORE_FRAME=__builtin_ia32_ldmxcsr(0x1f80 | 0x8000 | 0x4000 | 0x40);";
+    let rounds = Hostile::c("bright", &[other]).unwrap();
+    let wanted = state_hash(&mut plain.run(false));
+    assert_eq!([false, true].map(|isolated| state_hash(&mut rounds.run(isolated))), [wanted.clone(), wanted]);
+}
+
+#[test]
 fn what_was_learned_until_a_filter_ended_is_kept() {
     for (end, words) in ENDS {
         let Some(breaks) = Hostile::c("breaks", &[end, "-DAT=500"]) else { return };

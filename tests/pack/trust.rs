@@ -290,3 +290,77 @@ fn verify_and_inspect_open_no_socket_and_start_no_process() {
         assert!(calls.len() == 1 && calls[0].contains("execve"), "{command}: {calls:?}");
     }
 }
+
+/// A key of this name, and the pack of a version signed by it.
+fn keygen(bench: &Bench, name: &str) {
+    bench.ok(&["pack", "keygen", name, "--no-password"]);
+}
+
+#[test]
+pub(super) fn a_key_hands_over_by_a_word_that_it_has_signed_and_never_back() {
+    let bench = Bench::new();
+    let old = signed_pack(&bench, "ada/short");
+    bench.ok(&["pack", "install", &old]);
+    keygen(&bench, "new");
+    keygen(&bench, "eve");
+    let new = rebuild(&bench, "0.2.0", "new");
+    // Nobody hands over who is not trusted, and nobody but the key itself.
+    bench.ok(&["pack", "rotate", "ada", "--to", "new.pub", "--key", "eve.key", "--out", "eve.rotation"]);
+    refused(&bench, &["pack", "trust", "--said", "eve.rotation"], "E-TRUST-KEY");
+    refused(&bench, &["pack", "install", &new], "E-TRUST-KEY-CHANGED");
+    bench.ok(&["pack", "rotate", "ada", "--to", "new.pub", "--key", "ada.key", "--date", "2026-11-28"]);
+    let text = bench.read("ada.rotation");
+    bench.write("changed.rotation", text.replace("2026-11-28", "2026-11-29"));
+    refused(&bench, &["pack", "trust", "--said", "changed.rotation"], "E-TRUST-STATEMENT");
+    bench.ok(&["pack", "trust", "--said", "ada.rotation"]);
+    // What the old key signed goes on; the new one replaces it; then there is no way back.
+    let run = &["run", "ada/short", "--out", "out", "--force"][..];
+    assert!(matches!(bench.engine(run).status.code(), Some(0 | 1)));
+    bench.ok(&["pack", "install", &new]);
+    assert!(matches!(bench.engine(run).status.code(), Some(0 | 1)));
+    let newer = rebuild(&bench, "0.3.0", "ada");
+    refused(&bench, &["pack", "install", &newer], "E-TRUST-KEY-CHANGED");
+    // A second heir of the old key is refused, the same word again is not.
+    bench.ok(&["pack", "rotate", "ada", "--to", "eve.pub", "--key", "ada.key", "--out", "second.rotation"]);
+    refused(&bench, &["pack", "trust", "--said", "second.rotation"], "E-TRUST-ROLLBACK");
+    bench.ok(&["pack", "trust", "--said", "ada.rotation"]);
+}
+
+#[test]
+pub(super) fn a_signed_list_revokes_for_its_owner_and_is_never_rolled_back() {
+    let bench = Bench::new();
+    let file = signed_pack(&bench, "ada/short");
+    bench.ok(&["pack", "install", &file]);
+    keygen(&bench, "new");
+    keygen(&bench, "bob");
+    bench.ok(&["pack", "trust", "bob", "--key", "bob.pub"]);
+    let list = |number: &str, day: &str, owner: &str, revoked: &str, key: &str| {
+        let out = format!("{owner}-{number}-{revoked}");
+        let key = format!("{key}.key");
+        bench.ok(&["pack", "revoke", owner, revoked, "--number", number, "--date", day, "--key", &key, "--out", &out]);
+        out
+    };
+    // Bob speaks for his own packs alone.
+    let theirs = list("1", "2026-11-01", "ada", "ada.pub", "bob");
+    refused(&bench, &["pack", "trust", "--said", &theirs], "E-TRUST-KEY");
+    let own = list("1", "2026-11-01", "bob", "ada.pub", "bob");
+    bench.ok(&["pack", "trust", "--said", &own]);
+    let run = &["run", "ada/short", "--out", "out", "--force"][..];
+    assert!(matches!(bench.engine(run).status.code(), Some(0 | 1)));
+    // Ada hands over, and the new key revokes the old one: what is installed stops.
+    bench.ok(&["pack", "rotate", "ada", "--to", "new.pub", "--key", "ada.key"]);
+    bench.ok(&["pack", "trust", "--said", "ada.rotation"]);
+    let second = list("2", "2026-11-20", "ada", "ada.pub", "new");
+    bench.ok(&["pack", "trust", "--said", &second]);
+    refused(&bench, run, "E-TRUST-REVOKED");
+    // An older list changes nothing, by number or by day.
+    for (number, day) in [("1", "2026-11-20"), ("3", "2026-11-19")] {
+        let older = list(number, day, "ada", "bob.pub", "new");
+        refused(&bench, &["pack", "trust", "--said", &older], "E-TRUST-ROLLBACK");
+    }
+    // A later one adds to it.
+    let third = list("3", "2026-11-21", "ada", "bob.pub", "new");
+    bench.ok(&["pack", "trust", "--said", &third]);
+    refused(&bench, run, "E-TRUST-REVOKED");
+    assert!(bench.ok(&["pack", "trust"]).contains("list 3 of 2026-11-21 revokes 2 keys"));
+}

@@ -1,6 +1,7 @@
 //! Runs the engine in a scratch folder.
 
 pub(crate) mod filters;
+pub(crate) mod mutate;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

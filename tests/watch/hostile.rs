@@ -124,20 +124,43 @@ fn a_request_that_never_ends_is_ended() {
 }
 
 #[test]
-fn a_ninth_connection_is_sent_away() {
+fn connections_without_the_token_keep_nobody_out() {
     let served = Served::new(&[]);
-    let mut held: Vec<_> = (0..8).map(|_| served.connect()).collect();
-    for stream in &mut held {
-        stream.write_all(b"GET").unwrap();
+    // Idle ones, ones that stop within a request, and ones that come again as soon as they are sent away.
+    let mut held: Vec<_> = (0..40).map(|_| served.connect()).collect();
+    for stream in held.iter_mut().take(20) {
+        drop(stream.write_all(b"GET"));
     }
-    for _ in 0..1000 {
-        let mut answer = String::new();
-        drop(served.connect().read_to_string(&mut answer));
-        assert_eq!(status(&answer), 503);
+    let end = std::sync::atomic::AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        for _ in 0..24 {
+            scope.spawn(|| {
+                while !end.load(std::sync::atomic::Ordering::Relaxed) {
+                    if let Ok(mut stream) = std::net::TcpStream::connect(("127.0.0.1", served.port)) {
+                        drop(stream.write_all(b"GET /"));
+                        std::thread::sleep(std::time::Duration::from_millis(1));
+                    }
+                }
+            });
+        }
+        let loads: Vec<u16> = (0..40).map(|_| served.status("GET", "/", "")).collect();
+        end.store(true, std::sync::atomic::Ordering::Relaxed);
+        assert!(loads.iter().all(|status| *status == 200), "{loads:?}");
+    });
+}
+
+#[test]
+fn the_page_may_be_opened_from_elsewhere_but_not_embedded() {
+    let served = Served::new(&[]);
+    let from = |mode: &str, dest: &str| {
+        format!("Sec-Fetch-Site: cross-site\r\nSec-Fetch-Mode: {mode}\r\nSec-Fetch-Dest: {dest}\r\n")
+    };
+    assert_eq!(served.status("GET", "/", &from("navigate", "document")), 200);
+    for (mode, dest) in [("navigate", "iframe"), ("no-cors", "image"), ("no-cors", "script"), ("cors", "document")] {
+        assert_eq!(served.status("GET", "/", &from(mode, dest)), 403, "{mode} {dest}");
     }
-    drop(held);
-    let again = std::iter::repeat_with(|| served.status("GET", "/", "")).find(|status| *status != 503);
-    assert_eq!(again, Some(200));
+    assert_eq!(served.status("GET", "/frame", &from("navigate", "document")), 403);
+    assert_eq!(served.status("POST", "/relearn", &from("navigate", "document")), 403);
 }
 
 #[test]

@@ -11,12 +11,14 @@ mod lines;
 mod mistakes;
 mod render;
 mod told;
+mod visible;
 
 pub use codes::{all_codes, code_page};
 pub use excerpt::excerpt;
 use lines::Lines;
 pub(crate) use mistakes::{MOST_MISTAKES, Mistakes};
 pub use told::Told;
+pub use visible::{for_json, for_table, for_terminal, is_hidden};
 
 /// The result of anything that a user's input can make fail.
 pub type Result<T> = std::result::Result<T, Box<Diagnostic>>;
@@ -232,9 +234,7 @@ pub fn printable(text: &str) -> String {
             out.push('…');
             break;
         }
-        // Bidirectional controls can make a line read as something else than it is.
-        let hidden = c.is_control() || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-        if hidden { out.extend(c.escape_unicode()) } else { out.push(c) }
+        if is_hidden(c) { out.extend(c.escape_unicode()) } else { out.push(c) }
     }
     out
 }

@@ -4,6 +4,7 @@ use std::fmt::{self, Write};
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use engine::diagnostic::is_hidden;
 
 /// Text that may hold anything, as it stands between tags or in double quotes.
 pub(crate) struct Escaped<'a>(pub(crate) &'a str);
@@ -16,8 +17,8 @@ impl fmt::Display for Escaped<'_> {
                 '>' => f.write_str("&gt;")?,
                 '&' => f.write_str("&amp;")?,
                 '"' => f.write_str("&quot;")?,
-                // XML 1.0 has no way to write these.
-                c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => f.write_char('\u{fffd}')?,
+                // XML 1.0 has no way to write control characters; others turn the text around them.
+                c if is_hidden(c) || matches!(c, '\u{fffe}' | '\u{ffff}') => f.write_char('\u{fffd}')?,
                 c => f.write_char(c)?,
             }
         }

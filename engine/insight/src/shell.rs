@@ -1,5 +1,6 @@
 //! A page that is whole in one file and runs no script.
 
+use engine::diagnostic::is_hidden;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// Nothing is loaded but pictures in the page itself, and no script runs.
@@ -21,5 +22,7 @@ pub fn page_without_scripts(title: &str, style: &str, body: &Markup) -> String {
             body { (body) }
         }
     };
-    page.into_string()
+    // Whatever stands on it: nothing turns a line around.
+    let seen = |c: char| if is_hidden(c) && !matches!(c, '\n' | '\t') { char::REPLACEMENT_CHARACTER } else { c };
+    page.into_string().chars().map(seen).collect()
 }

@@ -22,6 +22,7 @@ mod runnable;
 mod scaffold;
 mod shelf;
 mod signature;
+mod statement;
 mod trust;
 
 pub use author::{Author, build, draft};
@@ -42,7 +43,8 @@ pub use runnable::Runnable;
 pub use scaffold::scaffold;
 pub use shelf::Shelf;
 pub use signature::{Password, Signature, key_id, key_line, needs_password, new_keys, sign};
-pub use trust::{Signer, TrustStore, TrustedKey};
+pub use statement::{Revocations, Rotation, Statement};
+pub use trust::{RetiredKey, RevocationList, Signer, TrustStore, TrustedKey};
 
 use std::path::Path;
 

@@ -163,7 +163,8 @@ impl Lock {
 
     fn check_change(&self, before: &Locked, pack: &Pack, signer: &Signer, allow_older: bool) -> Result<()> {
         let name = &before.name;
-        if before.key.as_deref() != signer.key() {
+        let same_signer = before.key.as_deref() == signer.key();
+        if !same_signer && !before.key.as_deref().is_some_and(|key| signer.took_over(key)) {
             let message = format!("{} is not signed by the key that signed {name} {}", pack.title(), before.version);
             let help = format!("ask '{}' over another way; to start anew: engine pack remove {name}", name.owner());
             return distrusted("E-TRUST-KEY-CHANGED", message).help(help).fail();

@@ -117,7 +117,7 @@ pub fn sign(pack: &Pack, secret_key: &str, password: Password) -> Result<Signatu
     Signature::parse(&signed.into_string())
 }
 
-fn secret(text: &str, password: Password) -> Result<SecretKey> {
+pub(super) fn secret(text: &str, password: Password) -> Result<SecretKey> {
     let form = || key_error("the file holds no secret key in the form of minisign");
     let boxed = SecretKeyBox::from_string(text).map_err(|_| form())?;
     let password = match password {
@@ -157,7 +157,7 @@ pub fn key_id(public_key: &str) -> Result<String> {
     Ok(hex_id(public(public_key)?.keynum()))
 }
 
-fn public(text: &str) -> Result<PublicKey> {
+pub(super) fn public(text: &str) -> Result<PublicKey> {
     PublicKey::from_base64(text).map_err(|_| key_error("this is no public key of minisign: it starts with RW"))
 }
 

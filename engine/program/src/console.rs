@@ -1,9 +1,10 @@
-//! What a person or a program reads: results on standard output, everything else on standard error.
+//! What a person or a program reads: results on standard output, everything else on standard error. Here is the border that
+//! strangers' text passes: nothing that controls a terminal leaves as it is.
 
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::time::Duration;
 
-use engine::diagnostic::Diagnostic;
+use engine::diagnostic::{Diagnostic, for_json, for_terminal};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// Why a command could not go on.
@@ -45,7 +46,7 @@ impl Console {
     /// A line of the result for a person; nothing under `--json`.
     pub(crate) fn line(&mut self, text: &str) -> Result<(), ConsoleError> {
         if !self.json {
-            writeln!(self.out, "{text}")?;
+            writeln!(self.out, "{}", for_terminal(text))?;
         }
         Ok(())
     }
@@ -53,8 +54,8 @@ impl Console {
     /// The whole result for a program; nothing without `--json`.
     pub(crate) fn json(&mut self, value: &impl serde::Serialize) -> Result<(), ConsoleError> {
         if self.json {
-            serde_json::to_writer_pretty(&mut self.out, value).map_err(std::io::Error::from)?;
-            writeln!(self.out)?;
+            let document = serde_json::to_string_pretty(value).map_err(std::io::Error::from)?;
+            writeln!(self.out, "{}", for_json(&document))?;
         }
         Ok(())
     }
@@ -73,14 +74,14 @@ impl Console {
     /// A note on standard error.
     pub(crate) fn note(&self, text: &str) {
         // Nothing can be told to anyone if standard error is gone.
-        let _ = writeln!(std::io::stderr(), "{text}");
+        let _ = writeln!(std::io::stderr(), "{}", for_terminal(text));
     }
 
     /// An error on standard error: for a person, or as one JSON object.
     pub(crate) fn error(&mut self, error: &Diagnostic, colour: bool) {
         let _ = self.out.flush();
         let colour = colour && std::env::var_os("NO_COLOR").is_none() && std::env::var("TERM").as_deref() != Ok("dumb");
-        let text = if self.json { error.to_json().to_string() } else { error.render(colour) };
+        let text = if self.json { for_json(&error.to_json().to_string()).into_owned() } else { error.render(colour) };
         self.note(text.trim_end());
     }
 

@@ -34,7 +34,8 @@ impl Guard {
             return Err(Refusal(HttpStatus::FORBIDDEN, "this Origin may not ask"));
         }
         // What another page only embeds comes without an Origin, but says so here.
-        if request.all("sec-fetch-site").any(|site| site != b"same-origin" && site != b"none") {
+        let embedded = request.all("sec-fetch-site").any(|site| site != b"same-origin" && site != b"none");
+        if embedded && !is_opened(request) {
             return Err(Refusal(HttpStatus::FORBIDDEN, "another page may not ask"));
         }
         if !self.knows(request.asked("token").unwrap_or("")) {
@@ -53,6 +54,14 @@ impl Guard {
         let differs = given.bytes().zip(self.token.bytes()).fold(0, |differs, (a, b)| differs | (a ^ b));
         given.len() == self.token.len() && differs == 0
     }
+}
+
+/// Whether the page itself is opened in a window of its own, as from the file through which the browser is started.
+fn is_opened(request: &HttpRequest) -> bool {
+    let says = |name: &str, value: &str| request.only(name) == Some(value);
+    (request.method.as_str(), request.path.as_str()) == ("GET", "/")
+        && says("sec-fetch-mode", "navigate")
+        && says("sec-fetch-dest", "document")
 }
 
 /// Whether a body comes that nobody would read, or one whose length is not known before.

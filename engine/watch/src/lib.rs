@@ -17,6 +17,7 @@ mod answer;
 mod board;
 mod combined;
 mod desk;
+mod door;
 mod events;
 mod files;
 mod findings;

@@ -11,7 +11,7 @@ const MOST_HEAD_BYTES: usize = 8 * 1024;
 /// Most headers; browsers send about 15.
 const MOST_HEADERS: usize = 64;
 /// How long a request may take to arrive.
-const HEAD_TIMEOUT: Duration = Duration::from_secs(10);
+const HEAD_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// A request's line and headers; no request here needs a body.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -34,7 +34,7 @@ impl HttpRequest {
         let (deadline, mut head, mut piece) = (Instant::now() + HEAD_TIMEOUT, Vec::new(), [0; 2048]);
         loop {
             let left = deadline.saturating_duration_since(Instant::now()).max(Duration::from_millis(1));
-            let late = || Refusal(HttpStatus::REQUEST_TIMEOUT, "the request took longer than 10 seconds");
+            let late = || Refusal(HttpStatus::REQUEST_TIMEOUT, "the request took longer than a second");
             stream.set_read_timeout(Some(left)).map_err(|_| late())?;
             match stream.read(&mut piece) {
                 Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use super::answer::{HttpAnswer, HttpStatus, Refusal, close, send};
 use super::board::{Board, SavedRun};
+use super::door::Door;
 use super::events;
 use super::guard::Guard;
 use super::relearn::Asker;
@@ -15,13 +16,13 @@ use engine::digest::hex;
 use engine::experiment::Phase;
 use insight::page::{Document, Page, Shot, page, shot_of};
 
-/// The most connections at a time.
+/// The most connections at a time of those who have the token.
 const MOST_CONNECTIONS: usize = 8;
 /// Ports that are tried, from the first on.
 const PORTS: u16 = 20;
 /// Who was refused has to wait: a flood of requests cannot take the processor from learning.
 const REFUSED_WAIT: Duration = Duration::from_millis(100);
-/// The answer to whoever comes while all places are taken.
+/// How long nobody is let in after somebody was sent away.
 const TURNED_AWAY_WAIT: Duration = Duration::from_millis(5);
 
 /// Where the page is.
@@ -38,6 +39,9 @@ struct Server {
     board: Arc<Board>,
     asker: Asker,
     guard: Guard,
+    door: Door,
+    /// Whoever holds a copy has a place.
+    places: Arc<()>,
     page: Page,
     /// Moments are played one at a time, beside learning.
     player: Mutex<()>,
@@ -60,46 +64,54 @@ pub fn listen(board: Arc<Board>, asker: Asker, port: u16) -> Result<Address> {
     getrandom::fill(&mut random).map_err(|error| limit("E-WATCH-SERVER", format!("cannot make a token: {error}")))?;
     let token = hex(&random);
     let url = format!("http://127.0.0.1:{port}/?token={token}");
-    let server = Server { board, asker, guard: Guard::new(token, port), page: page(None)?, player: Mutex::default() };
+    let (guard, page) = (Guard::new(token, port), page(None)?);
+    let server =
+        Server { board, asker, guard, door: Door::default(), places: Arc::default(), page, player: Mutex::default() };
     let thread = std::thread::Builder::new().name("server".into()).spawn(move || accept(&listener, &Arc::new(server)));
     thread.map_err(|error| limit("E-WATCH-SERVER", format!("cannot start the server: {error}")))?;
     Ok(Address { port, url })
 }
 
 fn accept(listener: &TcpListener, server: &Arc<Server>) {
-    // Whoever holds a copy has a place.
-    let places = Arc::new(());
-    let too_many = HttpAnswer::text(HttpStatus::SERVICE_UNAVAILABLE, "too many connections").bytes(&server.page.policy);
     loop {
-        let Ok((mut stream, _)) = listener.accept() else {
+        let entered =
+            listener.accept().and_then(|(stream, _)| server.door.enter(&stream).map(|entered| (stream, entered)));
+        let Ok((mut stream, (number, crowded))) = entered else {
             std::thread::sleep(REFUSED_WAIT);
             continue;
         };
-        if Arc::strong_count(&places) <= MOST_CONNECTIONS {
-            let (server, place) = (Arc::clone(server), Arc::clone(&places));
-            // Without a thread nobody answers, and the connection closes.
-            drop(std::thread::Builder::new().spawn(move || {
-                connection(&mut stream, &server);
-                drop(place);
-            }));
-        } else {
-            // What the kernel takes at once is enough; nobody waits for this client.
-            let _ = stream.set_nonblocking(true);
-            let _ = std::io::Write::write(&mut stream, &too_many);
+        let own = Arc::clone(server);
+        let started = std::thread::Builder::new().spawn(move || {
+            connection(&mut stream, number, &own);
+            own.door.leave(number);
+        });
+        // Without a thread nobody answers, and the connection closes.
+        if started.is_err() {
+            server.door.leave(number);
+        }
+        // A flood of strangers takes little of the processor.
+        if crowded {
             std::thread::sleep(TURNED_AWAY_WAIT);
         }
     }
 }
 
 /// One request for each connection, so that each is checked from its first byte.
-fn connection(stream: &mut TcpStream, server: &Server) {
+fn connection(stream: &mut TcpStream, number: u64, server: &Server) {
     let _ = stream.set_nodelay(true);
     let admitted = HttpRequest::read(stream).and_then(|request| server.guard.admit(&request).map(|()| request));
     let answer = match admitted {
-        Ok(request) => match (request.method.as_str(), request.path.as_str()) {
-            ("GET", "/live") => return drop(events::tell(stream, &server.board, &server.page.policy)),
-            _ => server.answer(&request),
-        },
+        Ok(request) => {
+            server.door.leave(number);
+            let place = Arc::clone(&server.places);
+            // One copy is the server's own.
+            let full = Arc::strong_count(&place) > MOST_CONNECTIONS + 1;
+            match (request.method.as_str(), request.path.as_str()) {
+                _ if full => HttpAnswer::text(HttpStatus::SERVICE_UNAVAILABLE, "too many connections"),
+                ("GET", "/live") => return drop(events::tell(stream, &server.board, &server.page.policy)),
+                _ => server.answer(&request),
+            }
+        }
         Err(refusal) => {
             std::thread::sleep(REFUSED_WAIT);
             refusal.into()

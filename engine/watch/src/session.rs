@@ -118,6 +118,7 @@ impl Session {
     /// If there is no room for more steps, or the new script fails on what a robot sees; then the session cannot go on.
     pub(super) fn swap(&mut self, plan: Plan, carry: Carry) -> Result<()> {
         let carry = if carry == Carry::Keep { self.plan.carries_to(&plan) } else { carry };
+        let plan = plan.sharing(&self.plan);
         let before = self.plan.clone();
         let mut legs = std::mem::take(&mut self.plan.earlier);
         let steps = self.done - legs.iter().map(|leg| leg.steps).sum::<u64>();

@@ -233,7 +233,7 @@ impl<R: Robot, L: Learner> Learning<R, L> {
         &self.learner
     }
 
-    /// Learns for so many more steps, or until `stop` is set at the end of a window, or something fails.
+    /// Learns for so many more steps, or until `stop` is set, or something fails.
     ///
     /// # Errors
     /// What failed, in this run or an earlier one. What was learned before can be had all the same, see
@@ -360,7 +360,7 @@ impl<R: Robot> Observer<R> for Joined {
     }
 }
 
-/// Counts, and at the end of every window reports and looks whether to stop.
+/// Counts, reports at the end of every window, and looks whether to stop: after each step, since a step may be slow.
 struct Windows<'a> {
     seed: u64,
     tally: &'a mut Tally,
@@ -370,11 +370,10 @@ struct Windows<'a> {
 
 impl<R: Robot> Observer<R> for Windows<'_> {
     fn stepped(&mut self, cycle: &Cycle<R>, step: &Step) -> ControlFlow<()> {
-        if !self.tally.count(step, cycle.fired()) {
-            return ControlFlow::Continue(());
+        if self.tally.count(step, cycle.fired()) {
+            let reinforcement = self.tally.windows.last().map_or(0.0, |window| window.reinforcement);
+            (self.report)(Progress { seed: self.seed, steps: cycle.steps(), reinforcement });
         }
-        let reinforcement = self.tally.windows.last().map_or(0.0, |window| window.reinforcement);
-        (self.report)(Progress { seed: self.seed, steps: cycle.steps(), reinforcement });
         if self.stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }

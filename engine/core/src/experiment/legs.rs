@@ -4,7 +4,9 @@
 //! learns, replays or stores a plan does the swaps at the same steps again, bit for bit.
 
 use super::Plan;
+use crate::diagnostic::SourceText;
 use crate::learner::Carry;
+use crate::script::Behaviour;
 use crate::settings::{LearnerKind, SETTINGS, Settings};
 use std::sync::Arc;
 
@@ -24,6 +26,35 @@ impl Plan {
     #[must_use]
     pub fn after(self, earlier: Vec<Leg>) -> Self {
         Self { earlier, ..self }
+    }
+
+    /// This plan, with all that another one and its legs have in the same words shared with them: worlds, filters, the script.
+    /// Hundreds of legs take hardly more memory than one.
+    #[must_use]
+    pub fn sharing(mut self, other: &Self) -> Self {
+        let same = |one: &SourceText, other: &SourceText| one.text == other.text && one.path == other.path;
+        let (own, known) = (self.worlds.layouts(), other.worlds.layouts());
+        let alike =
+            own.len() == known.len() && own.iter().zip(known).all(|(own, known)| same(&own.source, &known.source));
+        if alike && self.settings.robot.body == other.settings.robot.body {
+            self.layout = Arc::clone(&other.layout);
+            self.worlds = other.worlds.clone();
+        }
+        if Arc::ptr_eq(&self.filters, &other.filters) || self.filters.is_linked_in() && other.filters.is_linked_in() {
+            self.filters = Arc::clone(&other.filters);
+        }
+        let known = other.earlier.iter().rev().map(|leg| &leg.plan.behaviour);
+        let own = &self.behaviour;
+        let is_same = |known: &&Arc<Behaviour>| {
+            same(known.source(), own.source())
+                && known.params() == own.params()
+                && known.edition() == own.edition()
+                && known.settings() == own.settings()
+        };
+        if let Some(known) = std::iter::once(&other.behaviour).chain(known).find(is_same) {
+            self.behaviour = Arc::clone(known);
+        }
+        self
     }
 
     /// The plan under which learning begins.

@@ -18,7 +18,7 @@ pub struct SeedRun {
 }
 
 /// Learns a plan under a seed, unless it combines policies, and tests what came of it, with every step kept in `log`
-/// that it has room for. Once `stop` is set, it ends after the present window.
+/// that it has room for. Once `stop` is set, it ends after the present step.
 ///
 /// # Errors
 /// If a sensor, a filter or the script fails; what was learned before is in the error, and in the log.

@@ -227,7 +227,7 @@ pub fn test_robot<R: Robot>(
     Ok(TestRun { figures, trail, snapshot, tally, chosen, state_hash, combination: None, uses, worlds })
 }
 
-/// Counts, and looks at the end of every window whether to stop.
+/// Counts, and looks after each step whether to stop.
 struct Counts<'a> {
     tally: Tally,
     /// By action: how often it was chosen.
@@ -258,7 +258,8 @@ impl<R: Robot> Observer<R> for Counts<'_> {
                 self.goals_steps.push(steps);
             }
         }
-        if self.tally.count(step, cycle.fired()) && self.stop.load(Ordering::Relaxed) {
+        self.tally.count(step, cycle.fired());
+        if self.stop.load(Ordering::Relaxed) {
             return ControlFlow::Break(());
         }
         ControlFlow::Continue(())

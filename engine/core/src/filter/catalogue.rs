@@ -65,6 +65,12 @@ impl Catalogue {
         Self { linked_in, ..Self::default() }
     }
 
+    /// Whether these are the filters that are linked in, and nothing else.
+    #[must_use]
+    pub(crate) fn is_linked_in(&self) -> bool {
+        self.files.is_empty()
+    }
+
     /// Those, and the files of folders; no file is opened yet.
     ///
     /// # Errors

@@ -26,6 +26,8 @@ pub use condition::{EXAMPLE, LANGUAGE};
 pub use conformance::conformance;
 pub use entry::{Entry, Form};
 pub use kept::mount_of;
+#[cfg(feature = "native-filters")]
+pub use native::count_replies;
 pub use native::serve;
 pub use running::Running;
 pub use trust::Trust;

@@ -1,5 +1,6 @@
 //! Which native libraries may be loaded: none, but those whose digest the user named.
 
+use std::io::Read;
 use std::path::Path;
 
 use crate::diagnostic::{Diagnostic, Result, printable};
@@ -7,6 +8,9 @@ use crate::digest::Digest;
 
 /// The most bytes that a library or module may have.
 const LARGEST_FILE_BYTES: u64 = 256 << 20;
+
+/// The most bytes that a list of digests may have.
+const LARGEST_TRUST_BYTES: u64 = 512 << 10;
 
 /// The digests of libraries that may be loaded.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -35,7 +39,9 @@ impl Trust {
     /// # Errors
     /// If the file cannot be read, is no TOML, or names something else than digests.
     pub fn allow_file(&mut self, path: &Path) -> Result<()> {
-        let text = std::fs::read_to_string(path).map_err(|error| Diagnostic::disk("read", path, &error))?;
+        let failed = |error| Box::new(Diagnostic::disk("read", path, &error));
+        let text = String::from_utf8(ordinary(path, LARGEST_TRUST_BYTES).map_err(failed)?);
+        let text = text.map_err(|_| failed(std::io::Error::other("it is not text")))?;
         let shown = printable(&path.display().to_string());
         let wrong = |why: &str| {
             let help = "write for example: native = [\"sha256:...\"], with all 64 digits";
@@ -74,7 +80,17 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
         let message = format!("'{shown}' has {length} bytes; a filter may have {LARGEST_FILE_BYTES}");
         return Diagnostic::new("E-FILTER-SIZE", message).fail();
     }
-    std::fs::read(path).map_err(failed)
+    ordinary(path, LARGEST_FILE_BYTES).map_err(failed)
+}
+
+/// The bytes of an ordinary file: a pipe does not make it wait, and a device is not read.
+fn ordinary(path: &Path, most: u64) -> std::io::Result<Vec<u8>> {
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(std::io::Error::other("it is not an ordinary file"));
+    }
+    let mut bytes = Vec::new();
+    std::fs::File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most { Err(std::io::Error::other("it is too long")) } else { Ok(bytes) }
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Rules and functions evaluated on the present facts.
 
+use super::budget;
 use super::compiled::{CompiledScript, variable};
 use super::explain;
 use super::expression::{Slot, StepFacts, Typed};
@@ -11,7 +12,7 @@ use super::running;
 use super::views::{AllFacts, SeenView, number, view};
 use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
 use crate::outcome::{Destination, Then};
-use rhai::{CallFnOptions, Dynamic, EvalAltResult, Map, Scope};
+use rhai::{CallFnOptions, Dynamic, EvalAltResult, Map, Position, Scope};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -88,11 +89,21 @@ impl Present {
     fn run(&self, script: &ScriptClause) -> Result<Dynamic> {
         let compiled = &*self.compiled;
         let mut scope = Scope::new();
+        let place = script.ast.statements().first().map_or(Position::NONE, |first| first.position());
+        let copied = |value: &Dynamic| {
+            budget::spend_values(budget::size(value)).map_err(|mut error| {
+                error.set_position(place);
+                self.told(error)
+            })
+        };
         for root in &script.roots {
             match root.as_str() {
                 "facts" => drop(scope.push("facts", self.all())),
                 "previous" => drop(scope.push_dynamic("previous", view("previous", &self.previous))),
-                "calibrated" => drop(scope.push_dynamic("calibrated", self.calibration().as_ref().clone())),
+                "calibrated" => {
+                    copied(&self.calibration())?;
+                    scope.push_dynamic("calibrated", self.calibration().as_ref().clone());
+                }
                 name if let Some(value) = self.measure(name) => drop(scope.push_dynamic(name, value)),
                 name if let Some(view) = compiled.views.iter().position(|view| view == name) => {
                     scope.push(name, SeenView { facts: Arc::clone(&self.facts), view });
@@ -105,6 +116,7 @@ impl Present {
         }
         for index in 0..script.variables {
             if let Some((name, value)) = variable(&compiled.constants, index) {
+                copied(&value)?;
                 scope.push_dynamic(name, value);
             }
         }
@@ -157,8 +169,9 @@ impl Present {
         let options = CallFnOptions::new().eval_ast(false).rewind_scope(true);
         let arguments = (self.all(),);
         let CompiledScript { engine, ast, .. } = compiled;
+        let operations = budget::left();
         let result = engine.call_fn_with_options(options, &mut Scope::new(), ast, function, arguments);
-        let placed = |error| compiled.stops.placed_in(error, engine, function, Dynamic::from(self.all()));
+        let placed = |error| compiled.stops.placed_in(error, engine, function, Dynamic::from(self.all()), operations);
         result.map_err(|error| self.told(placed(error)))
     }
 

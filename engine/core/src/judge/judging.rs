@@ -2,6 +2,7 @@
 
 mod shown;
 
+use super::budget;
 use super::compiled::{CompiledScript, Look};
 use super::evaluate::{Judgement, Present};
 use super::facts::{Facts, NO_ACTION, StageFacts};
@@ -10,6 +11,7 @@ use super::judged_world::JudgedWorld;
 use super::memory::Memory;
 use super::odometry::Odometry;
 use super::readings::PartRead;
+use super::sandbox::MAX_OPERATIONS;
 use super::uses;
 use crate::diagnostic::{Diagnostic, Result};
 use crate::geometry::Twist;
@@ -181,6 +183,7 @@ impl Judge {
     /// # Errors
     /// If it fails, or its result is not what the rules need.
     pub fn calibrate(&mut self) -> Result<()> {
+        budget::refill(MAX_OPERATIONS);
         self.present.calibrate()
     }
 
@@ -191,6 +194,7 @@ impl Judge {
     pub fn judge(&mut self) -> Result<Judgement> {
         self.take()?;
         self.is_taken = false;
+        budget::refill(MAX_OPERATIONS);
         let judgement = self.rules()?;
         if let Some(stage) = judgement.stage {
             self.enter(stage);

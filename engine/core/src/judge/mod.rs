@@ -5,8 +5,10 @@
 //! is left to the interpreter, inside limits that are counted, never timed.
 
 pub(crate) mod asked_range;
+pub(crate) mod budget;
 mod calibrated;
 pub(crate) mod compiled;
+mod equality;
 pub(crate) mod evaluate;
 pub(crate) mod explain;
 pub(crate) mod expression;

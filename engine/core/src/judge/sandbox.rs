@@ -11,7 +11,7 @@ use rhai::packages::{
 };
 use rhai::{Engine, OptimizationLevel};
 
-/// Steps of the interpreter in one call.
+/// Operations of one step, as `budget` counts them; of the top level and of `fn calibrate` as many.
 pub(crate) const MAX_OPERATIONS: u64 = 100_000;
 /// Functions that wait for one another.
 pub(crate) const MAX_CALL_LEVELS: usize = 16;
@@ -19,8 +19,7 @@ pub(crate) const MAX_CALL_LEVELS: usize = 16;
 pub(crate) const MAX_NESTING: usize = 48;
 /// Bytes of one text.
 pub(crate) const MAX_TEXT_BYTES: usize = 4096;
-/// Values in one array: more than any laser has beams. Comparing two arrays is one operation, however long they are, so
-/// that this and the operations together bound the time.
+/// Values in one array: more than any laser has beams.
 pub(crate) const MAX_ARRAY: usize = 2048;
 /// Keys in one map.
 pub(crate) const MAX_MAP: usize = 64;
@@ -75,6 +74,8 @@ pub(crate) fn engine() -> Engine {
     for word in NOT_HERE {
         engine.disable_symbol(*word);
     }
+    super::budget::register(&mut engine);
+    super::equality::register(&mut engine);
     super::functions::register(&mut engine);
     super::views::register(&mut engine);
     engine

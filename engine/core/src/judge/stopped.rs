@@ -1,7 +1,7 @@
 //! A script that a limit stopped: what is said of it, and the line at which it stopped.
 
 use super::explain::offset;
-use super::sandbox;
+use super::{budget, sandbox};
 use crate::diagnostic::SourceText;
 use rhai::{AST, Dynamic, Engine, EvalAltResult, Position, Scope};
 
@@ -9,9 +9,9 @@ use rhai::{AST, Dynamic, Engine, EvalAltResult, Position, Scope};
 pub(crate) fn stopped(error: &EvalAltResult) -> Option<(String, &'static str)> {
     use EvalAltResult as E;
     Some(match error {
-        E::ErrorTooManyOperations(_) => (
+        E::ErrorTooManyOperations(_) | E::ErrorTerminated(..) => (
             format!("the script was stopped after {} operations", sandbox::MAX_OPERATIONS),
-            "look for a loop that does not end; a step has a handful of operations to spend",
+            "look for a loop that does not end, and for arrays or maps that are read or compared in one",
         ),
         E::ErrorStackOverflow(_) => (
             format!("functions call one another too deep: at most {}", sandbox::MAX_CALL_LEVELS),
@@ -51,18 +51,21 @@ pub(crate) struct FunctionBody {
 }
 
 impl StopPlaces {
-    /// A failure moved to the line where a limit stopped `function` on the facts, which is found by running it again.
+    /// A failure moved to the line where a limit stopped `function` on the facts, which is found by running it again with
+    /// the operations that it had.
     pub(crate) fn placed_in(
         &self,
         error: Box<EvalAltResult>,
         engine: &Engine,
         function: &str,
         facts: impl Into<Dynamic>,
+        operations: u64,
     ) -> Box<EvalAltResult> {
         let body = self.bodies.iter().find(|body| body.name == function).filter(|_| stopped(&error).is_some());
         let Some(body) = body else { return error };
         let mut scope = Scope::new();
         scope.push_dynamic(body.argument.as_str(), facts.into());
+        budget::refill(operations);
         match engine.eval_ast_with_scope::<Dynamic>(&mut scope, &body.ast) {
             Err(again) if stopped(&again).is_some() => again,
             _ => error,
@@ -71,7 +74,12 @@ impl StopPlaces {
 
     /// Moves the failure into the loop of a function, if it stopped where this is called and it has no other loop.
     pub(crate) fn move_into_called(&self, error: &mut EvalAltResult, source: &SourceText) {
-        if !matches!(error, EvalAltResult::ErrorTooManyOperations(_) | EvalAltResult::ErrorDataTooLarge(..)) {
+        if !matches!(
+            error,
+            EvalAltResult::ErrorTooManyOperations(_)
+                | EvalAltResult::ErrorTerminated(..)
+                | EvalAltResult::ErrorDataTooLarge(..)
+        ) {
             return;
         }
         let called = &source.text[source.word_at(offset(source, error.position()))];

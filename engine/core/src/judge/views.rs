@@ -1,5 +1,6 @@
 //! How a script sees the facts: `facts`, its groups and sectors, each a handle on the measurements of one step.
 
+use super::budget;
 use super::fact_columns::Getter;
 use super::fact_table::FACTS;
 use super::facts::{self, Facts};
@@ -37,7 +38,10 @@ macro_rules! views {
         /// Makes every group known to an engine.
         fn register_groups(engine: &mut Engine) {
             engine.register_type_with_name::<AllFacts>("facts");
-            engine.register_get("calibrated", |all: &mut AllFacts| Dynamic::clone(&all.calibrated));
+            engine.register_get("calibrated", |all: &mut AllFacts| -> Evaluated<Dynamic> {
+                budget::spend_values(budget::size(&all.calibrated))?;
+                Ok(Dynamic::clone(&all.calibrated))
+            });
             engine.register_get("previous", |all: &mut AllFacts| PreviousView::new(Arc::clone(&all.previous)));
             $(register_group::<$name>(engine);)*
             $(engine.register_get($group, |before: &mut PreviousView| $name::new(Arc::clone(&before.0)));)*
@@ -159,7 +163,9 @@ struct SectorView {
 }
 
 impl SectorView {
+    /// Whoever asks reads them all.
     fn ranges(&self) -> &[f32] {
+        budget::charge((self.to - self.from) as u64 / budget::VALUES_PER_OPERATION);
         self.facts.sector_m(self.from, self.to)
     }
     fn nearest(&self) -> f64 {

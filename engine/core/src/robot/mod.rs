@@ -9,6 +9,7 @@ mod simulated;
 mod site;
 mod starts_in_use;
 mod variation;
+mod work;
 
 use crate::diagnostic::Result;
 use crate::geometry::{Pose, Twist};

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::journey::Journey;
 use super::site::{Site, in_view};
-use super::{Ended, Robot, Whereabouts};
+use super::{Ended, Robot, Whereabouts, work};
 use crate::diagnostic::{Diagnostic, Result};
 use crate::geometry::{Pose, Twist};
 use crate::saved::{Passed, Passing};
@@ -44,7 +44,10 @@ impl SimulatedRobot {
     /// # Errors
     /// As [`SimulatedRobot::new`].
     pub fn in_worlds(worlds: &WorldSet, settings: &Settings, seed: u64) -> Result<Self> {
-        worlds.layouts().iter().try_for_each(|layout| check_shadows(layout, settings))?;
+        for layout in worlds.layouts().iter() {
+            check_shadows(layout, settings)?;
+            work::survey(layout, settings)?;
+        }
         let mut here = Site::new(worlds.home(), settings, seed, 0);
         let varies = !worlds.further().is_empty() || !settings.randomise.is_empty();
         let mut journey = varies.then(|| Box::new(Journey::new(worlds, settings, seed)));
@@ -106,6 +109,7 @@ impl Robot for SimulatedRobot {
             watch.check(observation.sight(), self.moved)?;
         }
         here.laser.scan(&world_from_robot, here.world.seen_by(0), &mut observation.scan);
+        work::check(here)?;
         if let Some(colours) = &mut observation.ground {
             *colours = here.ground().read(&world_from_robot);
         }

@@ -22,6 +22,7 @@ use super::{
 };
 use crate::diagnostic::{Diagnostic, Mistakes, Result, SourceText, printable};
 use crate::judge::Look;
+use crate::judge::budget;
 use crate::judge::compiled::CompiledScript;
 use crate::judge::needs::Needs;
 use crate::judge::rule::CompiledRule;
@@ -132,6 +133,7 @@ impl Draft {
             setup::finish(&log, code, &tree.ast, defaults, mistakes);
         calls.into_iter().for_each(|call| unread.all_of(call));
         engine.register_global_module(constants_module(&constants).into());
+        budget::register_constants(&mut engine, &constants);
         let policies = (!unread.any_of("policy")).then_some(settings.policies.as_slice());
         let read = ReadScript { code, tree, engine, constants, settings: &settings, policies, needs, bins };
         let (compiled, outline, (success, own)) = read.compile(&mut spoilt, mistakes)?;

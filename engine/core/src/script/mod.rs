@@ -10,6 +10,7 @@ mod behaviour;
 mod bodies;
 mod compile;
 mod compile_facts;
+mod cost;
 mod draft;
 mod editions;
 mod fact_names;
@@ -58,6 +59,7 @@ mod view_names;
 mod words;
 
 pub use behaviour::Behaviour;
+pub use cost::Dear;
 pub(crate) use draft::Draft;
 pub use grammar::grammar;
 pub(crate) use measurable::Nameable;

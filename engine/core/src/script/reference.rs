@@ -1,8 +1,9 @@
 //! The page about the script language, and what editors need, from the lists that the engine itself uses.
 
 use super::setup_table::SETUP;
-use super::source;
+use super::{rules, source};
 use crate::judge::Unit;
+use crate::judge::budget;
 use crate::judge::fact_table::{FACTS, Fact, GROUPS};
 use crate::judge::functions::{FUNCTIONS, Function, WINDOWS};
 use crate::judge::sandbox;
@@ -112,7 +113,8 @@ fn functions(rows: &[Function]) -> String {
 
 fn limits() -> String {
     let rows = [
-        ("operations of the interpreter in one call", sandbox::MAX_OPERATIONS),
+        ("operations in one step, of all rules together", sandbox::MAX_OPERATIONS),
+        ("values of an array or a map that are read for one operation more", budget::VALUES_PER_OPERATION),
         ("functions that call one another", sandbox::MAX_CALL_LEVELS as u64),
         ("brackets and operators within one another", sandbox::MAX_NESTING as u64),
         ("bytes of one text", sandbox::MAX_TEXT_BYTES as u64),
@@ -120,6 +122,7 @@ fn limits() -> String {
         ("keys in a map", sandbox::MAX_MAP as u64),
         ("variables at one time", sandbox::MAX_VARIABLES as u64),
         ("functions in a script", sandbox::MAX_FUNCTIONS as u64),
+        ("rules in a script", rules::MOST_RULES as u64),
         ("bytes of a script", source::MAX_BYTES),
     ];
     table(&["what", "at most"], rows.iter().map(|(what, most)| vec![(*what).to_owned(), most.to_string()]))

@@ -2,11 +2,14 @@
 
 use super::spoilt::Spoilt;
 use crate::diagnostic::{Kind, Mistakes, Result};
-use crate::judge::{Judge, ViewFacts};
+use crate::judge::sandbox::MAX_OPERATIONS;
+use crate::judge::{Judge, ViewFacts, budget};
 use crate::settings::{Settings, ViewSettings};
 
 /// After so many mistakes nothing more is tried: each may take as long as the limits allow.
 const MOST_TRIED: usize = 100;
+/// After so many operations nothing more is tried: a script of the dearest rules loads within two seconds all the same.
+const MOST_OPERATIONS: u64 = 10 * MAX_OPERATIONS;
 
 /// Tries every rule and function that is not `spoilt` on an empty place and in a tight corner. Adds to `mistakes` what is
 /// wrong whatever is measured: kinds of values that do not fit, names. What depends on the values measured, such as a
@@ -20,20 +23,27 @@ pub(super) fn rehearse(
     spoilt: &mut Spoilt<'_>,
     mistakes: &mut Mistakes,
 ) -> Result<()> {
-    for (range_m, sees) in [(settings.laser.max_range_m, false), (settings.laser.min_range_m, true)] {
-        let facts = judge.facts_mut();
-        facts.ranges_m.fill(range_m as f32);
-        facts.views = settings.views().map(|view| seen(view, sees)).collect();
-        (facts.contact, facts.fallen) = (sees, sees);
-        (facts.step, facts.since_recovery) = (1, 1);
-        (facts.action_linear_m_per_s, facts.linear_m_per_s) = (0.2, 0.2);
+    let mut operations = MOST_OPERATIONS;
+    for cornered in [false, true] {
+        place(&mut judge, settings, cornered);
         if !spoilt.has("calibrate") && !certain(judge.calibrate(), mistakes)? {
             spoilt.insert("calibrate");
             spoilt.insert("calibrated");
         }
-        everything(&judge, spoilt, mistakes)?;
+        everything(&judge, spoilt, mistakes, &mut operations)?;
     }
     Ok(())
+}
+
+/// Fills in what is measured on an empty place, or in a tight corner.
+pub(super) fn place(judge: &mut Judge, settings: &Settings, cornered: bool) {
+    let facts = judge.facts_mut();
+    let range_m = if cornered { settings.laser.min_range_m } else { settings.laser.max_range_m };
+    facts.ranges_m.fill(range_m as f32);
+    facts.views = settings.views().map(|view| seen(view, cornered)).collect();
+    (facts.contact, facts.fallen) = (cornered, cornered);
+    (facts.step, facts.since_recovery) = (1, 1);
+    (facts.action_linear_m_per_s, facts.linear_m_per_s) = (0.2, 0.2);
 }
 
 /// A view that is full of foreground, or empty.
@@ -49,19 +59,22 @@ fn seen(view: &ViewSettings, sees: bool) -> ViewFacts {
     }
 }
 
-fn everything(judge: &Judge, spoilt: &Spoilt<'_>, mistakes: &mut Mistakes) -> Result<()> {
+fn everything(judge: &Judge, spoilt: &Spoilt<'_>, mistakes: &mut Mistakes, operations: &mut u64) -> Result<()> {
     let present = judge.present();
     for rule in &present.compiled.rules {
-        if mistakes.count() > MOST_TRIED {
+        if mistakes.count() > MOST_TRIED || *operations == 0 {
             return Ok(());
         }
+        budget::refill(MAX_OPERATIONS);
         if !spoilt.touches(&rule.condition_span, mistakes) {
             certain(present.condition(rule), mistakes)?;
         }
         if !spoilt.touches(&rule.value_span, mistakes) {
             certain(present.value(rule), mistakes)?;
         }
+        *operations = operations.saturating_sub(MAX_OPERATIONS - budget::left());
     }
+    budget::refill(MAX_OPERATIONS);
     match &present.compiled.reward {
         Some(span) if !spoilt.has("reward") => certain(present.reward(span), mistakes).map(drop),
         _ => Ok(()),

@@ -18,7 +18,7 @@ use std::ops::Range;
 /// Longest persistence.
 const MAX_TIME: f64 = 1e6;
 /// Most rules of one script.
-const MOST_RULES: usize = 256;
+pub(super) const MOST_RULES: usize = 256;
 
 /// Every rule without a mistake in it.
 pub(super) fn rules(

@@ -1,5 +1,6 @@
 //! What a script does when it runs.
 
+mod budget;
 mod editions;
 mod errors;
 mod guards;

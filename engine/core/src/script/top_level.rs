@@ -7,7 +7,8 @@ use super::stops::stop_places;
 use super::tree::Tree;
 use crate::diagnostic::{Diagnostic, Kind, MOST_MISTAKES, Mistakes};
 use crate::judge::explain::offset;
-use crate::judge::running;
+use crate::judge::sandbox::MAX_OPERATIONS;
+use crate::judge::{budget, running};
 use rhai::{AST, Engine, EvalAltResult, Expr, Position, Scope, Stmt};
 use std::collections::BTreeSet;
 
@@ -25,6 +26,7 @@ pub(super) fn run(
 ) -> Result<Scope<'static>, Diagnostic> {
     let mut scope = Scope::new();
     if mistakes.is_empty() {
+        budget::refill(MAX_OPERATIONS);
         match engine.run_ast_with_scope(&mut scope, &tree.ast) {
             Ok(()) => return Ok(scope),
             Err(mut error) => add(code, &tree.ast, &mut error, log, mistakes)?,
@@ -43,6 +45,7 @@ pub(super) fn run(
         let ast = AST::new(statements.collect::<Vec<_>>(), tree.ast.shared_lib().clone());
         log.clear();
         scope.clear();
+        budget::refill(MAX_OPERATIONS);
         let Err(mut error) = engine.run_ast_with_scope(&mut scope, &ast) else { return Ok(scope) };
         add(code, &tree.ast, &mut error, log, mistakes)?;
         // Where it was called from the top level, not where in a function it failed.

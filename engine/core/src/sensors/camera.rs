@@ -7,7 +7,7 @@ use super::luma;
 use super::noise::PixelNoise;
 use super::observation::Image;
 use super::painting::{Drawn, Painting};
-use super::shadows::Shadows;
+use super::shadows::{MOST_CAST, Shadows};
 use super::spans::Spans;
 use super::stretches::{FLOOR_FACE, OUTSIDE_LENS, SKY_FACE, Sight, Stretches};
 use super::surface::Surfaces;
@@ -25,6 +25,8 @@ mod depth;
 
 /// Faces of movers for which there is room from the start.
 const MOVING_FACES: usize = 256;
+/// What bringing one face into the view costs, in rows of a face.
+const FACE_WORK: u64 = 4;
 /// What is seen where there is nothing.
 const SKY: [u8; 3] = [186, 198, 210];
 
@@ -55,6 +57,8 @@ pub struct Camera {
     seen: Vec<usize>,
     drawn: Vec<Drawn>,
     nearness: Vec<Affine>,
+    /// Faces that were tried for the last image.
+    looked_at: u64,
     processor: Processor,
     /// What grey images are made from: the weighted sums of the colours, or colours that noise may cut off.
     weights: Vec<u16>,
@@ -119,6 +123,7 @@ impl Camera {
             seen: Vec::with_capacity(parts.solids.len()),
             drawn: Vec::with_capacity(faces + MOVING_FACES),
             nearness: Vec::with_capacity(faces + MOVING_FACES),
+            looked_at: 0,
             processor: Processor::best(),
             weights: Vec::new(),
             colours: Vec::new(),
@@ -134,6 +139,20 @@ impl Camera {
     /// Continues as if `frames` frames had been rendered.
     pub(crate) fn set_frames(&mut self, frames: u64) {
         self.frame = frames;
+    }
+
+    /// What finding the visible faces of the last image took: faces in sight, the rows that they cover, and the runs of pixels
+    /// that they were compared with; and the shadows of what moves.
+    #[must_use]
+    pub(crate) fn work(&self) -> u64 {
+        let cast = self.shadows.as_ref().map_or(0, |shadows| shadows.work()[1]);
+        self.spans.work() + FACE_WORK * self.looked_at + cast
+    }
+
+    /// Whether the shadows of what stands still took more work than they may, so that they are not complete.
+    #[must_use]
+    pub(crate) fn lacks_shadows(&self) -> bool {
+        self.shadows.as_ref().is_some_and(|shadows| shadows.work()[0] > MOST_CAST)
     }
 
     /// Renders into `image`, which gets the camera's size and keeps its format: colour, grey or depth. Grey is the luma of the
@@ -309,7 +328,9 @@ impl Camera {
             drawn: &mut self.drawn,
             nearness: &mut self.nearness,
         };
+        self.looked_at = self.moving.faces().len() as u64;
         for &solid in &self.seen {
+            self.looked_at += self.surfaces.of_solid(solid).len() as u64;
             for face in self.surfaces.of_solid(solid) {
                 drawing.face(&self.surfaces, &self.surfaces.faces()[face], first_look + face);
             }

@@ -15,6 +15,9 @@ use std::sync::Arc;
 /// Address of the laser's noise within a scan; no image has such a row, so the camera's noise is another.
 const NOISE_ROW: u64 = u64::MAX;
 
+/// What cutting one solid with the plane of the scan costs, in beams.
+const SOLID_WORK: u64 = 32;
+
 /// A scanning laser fixed to the robot: beams side by side, beam 0 rightmost, anticlockwise.
 ///
 /// It sees solids whose material returns light, movers, and the floor; not paint. It looks through solids from inside.
@@ -49,6 +52,8 @@ struct Beams {
     ahead: Vec<f64>,
     left: Vec<f64>,
     ranges_m: Vec<f64>,
+    /// Beams that were held against a face or a round side in this scan, and solids that were looked at.
+    work: u64,
     processor: Processor,
 }
 
@@ -87,6 +92,12 @@ impl Laser {
     /// Continues as if `scans` scans had been taken.
     pub(crate) fn set_scans(&mut self, scans: u64) {
         self.scans = scans;
+    }
+
+    /// What the last scan took: beams that were held against faces, and solids that were cut.
+    #[must_use]
+    pub(crate) fn work(&self) -> u64 {
+        self.sides.iter().map(|side| side.beams.work).sum()
     }
 
     /// Measures into `scan`, which gets one range for each beam. `world_from_robot` is the robot's base on the ground, x
@@ -146,7 +157,7 @@ fn sides(settings: &LaserSettings) -> Vec<Side> {
     let side = |from: usize, to: usize, middle_rad: f64, middle: Vector3, left: Vector3| {
         let along = |of: fn(f64) -> f64| (from..to).map(|beam| of(fan.bearing_rad(beam) - middle_rad)).collect();
         let (ahead, aside) = (along(libm::cos), along(libm::sin));
-        let beams = Beams { ahead, left: aside, ranges_m: vec![0.0; to - from], processor: Processor::best() };
+        let beams = Beams { ahead, left: aside, ranges_m: vec![0.0; to - from], work: 0, processor: Processor::best() };
         Side { mount: [place, middle, left, normal], beams }
     };
     if fan.view_deg <= 180.0 {
@@ -183,6 +194,7 @@ impl Plane {
 impl Beams {
     /// Forgets all but the floor.
     fn start(&mut self, plane: &Plane, max_range_m: f64) {
+        self.work = 0;
         let height = plane.position.z;
         let (fall_ahead, fall_left) = (-plane.ahead.z, -plane.left.z);
         if height <= 0.0 || (fall_ahead.abs() < 1e-9 && fall_left.abs() < 1e-9) {
@@ -198,6 +210,7 @@ impl Beams {
 
     /// Shortens the beams that meet a solid.
     fn meet(&mut self, plane: &Plane, surfaces: &Surfaces, index: usize, solid: &Solid) {
+        self.work += SOLID_WORK;
         if let Shape::Cylinder { radius_m, half_height_m } = solid.shape {
             self.meet_cylinder(plane, solid, radius_m, half_height_m);
             return;
@@ -251,6 +264,8 @@ impl Beams {
             return;
         }
         let directions = [&self.ahead[first..last], &self.left[first..last]];
+        // A vector of beams at a time.
+        self.work += (last - first) as u64 / 8;
         shorten(self.processor, &mut self.ranges_m[first..last], directions, turn, along);
     }
 
@@ -275,6 +290,7 @@ impl Beams {
         let (first, last) = self.beams_towards([centre[0], centre[1]], reach);
         let from = plane.position - solid.centre.coords;
         let outside = from.x * from.x + from.y * from.y - radius * radius;
+        self.work += (last - first) as u64;
         for beam in first..last {
             let direction = plane.ahead * self.ahead[beam] + plane.left * self.left[beam];
             let mut met = f64::INFINITY;

@@ -41,7 +41,7 @@ pub use depth_photograph::load_depth;
 pub use ground::{GroundColours, GroundSensors};
 pub use laser::Laser;
 #[cfg(feature = "photographs")]
-pub use photograph::{load_photograph, photograph_files};
+pub use photograph::{load_photograph, photograph_files, photograph_of};
 pub use rays::CameraRays;
 pub use watch::CameraWatch;
 pub(crate) use watch::self_test;

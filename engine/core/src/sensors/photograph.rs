@@ -4,7 +4,7 @@ use std::io::{Cursor, Read};
 use std::path::{Path, PathBuf};
 
 use image::imageops::{FilterType, crop_imm, resize};
-use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, RgbImage};
+use image::{ColorType, DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, RgbImage};
 
 use super::observation::Image;
 use crate::diagnostic::{Diagnostic, Result, nearest_name, printable};
@@ -14,8 +14,12 @@ use filter_api::Format;
 const MAX_FILE_BYTES: u64 = 64 << 20;
 /// The largest photograph that is decoded, pixels.
 const MAX_PIXELS: u64 = 50_000_000;
-/// Memory that a decoder may take: eight bytes for each pixel, and something for its tables.
-const MAX_DECODER_BYTES: u64 = 8 * MAX_PIXELS + (64 << 20);
+/// The largest progressive JPEG, pixels: its decoder keeps six bytes more for each.
+const MAX_PROGRESSIVE_PIXELS: u64 = 16_000_000;
+/// Most bytes of the decoded pixels, with those in eight bits for a colour that are made of them.
+const MAX_DECODED_BYTES: u64 = 3 * MAX_PIXELS;
+/// Memory that a decoder may take besides the pixels: for its tables, a colour profile, texts.
+const MAX_DECODER_BYTES: u64 = 16 << 20;
 /// Endings of the files that are taken from a folder.
 const ENDINGS: [&str; 3] = ["png", "jpg", "jpeg"];
 
@@ -87,6 +91,14 @@ pub fn load_photograph(path: &Path, width_px: usize, height_px: usize) -> Result
     Ok(scaled(&decoded(path)?.into_rgb8(), width_px, height_px))
 }
 
+/// As [`load_photograph`], of the bytes of a file that is called so.
+///
+/// # Errors
+/// Those of [`load_photograph`].
+pub fn photograph_of(path: &Path, bytes: &[u8], width_px: usize, height_px: usize) -> Result<Image> {
+    Ok(scaled(&decode(path, bytes)?.into_rgb8(), width_px, height_px))
+}
+
 /// The pixels of a file, turned upright.
 pub(super) fn decoded(path: &Path) -> Result<DynamicImage> {
     let bytes = read(path)?;
@@ -131,6 +143,7 @@ fn decode(path: &Path, bytes: &[u8]) -> Result<DynamicImage> {
     if u64::from(width) * u64::from(height) > MAX_PIXELS {
         return too_large(path, &format!("{width}x{height} pixels")).fail();
     }
+    check_decoded(path, bytes, &decoder)?;
     // The decoder fills what is missing with grey and says nothing.
     if width == 0 || height == 0 || (format == ImageFormat::Jpeg && !jpeg_ends(bytes)) {
         return damaged(path, name).fail();
@@ -139,6 +152,43 @@ fn decode(path: &Path, bytes: &[u8]) -> Result<DynamicImage> {
     let mut image = DynamicImage::from_decoder(decoder).map_err(failed)?;
     image.apply_orientation(orientation);
     Ok(image)
+}
+
+/// Whether the pixels fit into memory: files with few pixels may have many bytes for each.
+fn check_decoded(path: &Path, bytes: &[u8], decoder: &impl ImageDecoder) -> Result<()> {
+    let (width, height) = decoder.dimensions();
+    let pixels = u64::from(width) * u64::from(height);
+    let eight_bits = if decoder.color_type() == ColorType::Rgb8 { 0 } else { 3 * pixels };
+    let decoded = decoder.total_bytes().saturating_add(eight_bits);
+    if decoded > MAX_DECODED_BYTES {
+        let found = format!(
+            "{} MB once it is decoded, where {} MB are allowed",
+            decoded / 1_000_000,
+            MAX_DECODED_BYTES / 1_000_000
+        );
+        return too_large(path, &found).fail();
+    }
+    if pixels > MAX_PROGRESSIVE_PIXELS && is_progressive(bytes) {
+        let found = format!("a progressive JPEG of {width}x{height} pixels, of which 16 megapixels are allowed");
+        return too_large(path, &found).fail();
+    }
+    Ok(())
+}
+
+/// Whether the first frame of a JPEG file is coded in several passes; false for anything else.
+fn is_progressive(bytes: &[u8]) -> bool {
+    let mut at = 2;
+    while let [0xff, marker, rest @ ..] = &bytes[at.min(bytes.len())..] {
+        match (marker, rest) {
+            (0xc2 | 0xc6 | 0xca | 0xce, _) => return true,
+            (0xc0 | 0xc1 | 0xd9 | 0xda, _) => return false,
+            (0xff, _) => at += 1,
+            (0x01 | 0xd0..=0xd7, _) => at += 2,
+            (_, [high, low, ..]) => at += 2 + usize::from(u16::from_be_bytes([*high, *low])),
+            _ => return false,
+        }
+    }
+    false
 }
 
 /// Whether a JPEG file has its end marker; a thumbnail inside it has one too, so segments are walked.

@@ -26,6 +26,9 @@ const NO_SHEET: u32 = u32::MAX;
 /// Sheets that movers may cast on in one frame before more room is made.
 const MOST_TOUCHED: usize = 256;
 
+/// Most work of casting what stands still, in rows of polygons and sixteens of their cells: some tenths of a second.
+pub(super) const MOST_CAST: u64 = 8_000_000;
+
 /// The shadows of a scene.
 #[derive(Debug, Clone)]
 pub(super) struct Shadows {
@@ -41,6 +44,8 @@ pub(super) struct Shadows {
     casters: Surfaces,
     /// Sheets and areas of them on which something has cast that may stand elsewhere now.
     touched: Vec<(u32, Area)>,
+    /// What casting took: for what stands still, and for what moved in the last frame.
+    work: [u64; 2],
 }
 
 impl Shadows {
@@ -67,8 +72,10 @@ impl Shadows {
             now: Vec::new(),
             casters: Surfaces::with_room(),
             touched: Vec::with_capacity(MOST_TOUCHED),
+            work: [0; 2],
         };
-        shadows.standing = Arc::new(shadows.cast_standing(scene, surfaces, cells));
+        let (standing, work) = shadows.cast_standing(scene, surfaces, cells);
+        (shadows.standing, shadows.work[0]) = (Arc::new(standing), work);
         shadows.sheets.iter_mut().for_each(|sheet| sheet.survey(&shadows.standing));
         Some(Box::new(shadows))
     }
@@ -78,11 +85,18 @@ impl Shadows {
         self.sheet_of_face[face] != NO_SHEET
     }
 
-    fn cast_standing(&self, scene: &Scene, surfaces: &Surfaces, count: usize) -> Vec<u8> {
-        let mut cells = vec![0; count];
+    /// What casting took, counted: for what stands still, where it ends soon after [`MOST_CAST`], and for what moved in the
+    /// last frame.
+    pub(super) fn work(&self) -> [u64; 2] {
+        self.work
+    }
+
+    /// The cells, and what they took.
+    fn cast_standing(&self, scene: &Scene, surfaces: &Surfaces, count: usize) -> (Vec<u8>, u64) {
+        let (mut all, mut work) = (vec![0; count], 0);
         for sheet in &self.sheets {
             for &(sun, bit) in &self.suns {
-                let mut cells = sheet.cells(&mut cells);
+                let mut cells = sheet.cells(&mut all);
                 if sheet.normal.dot(&sun) <= 1e-9 {
                     cells.fill(bit);
                     continue;
@@ -90,14 +104,19 @@ impl Shadows {
                 scene.visit(
                     |min, max| sheet.may_be_shaded_by(&sun, &min, &max),
                     |solid| {
-                        if scene.parts().solids[solid].collides {
+                        work += 1;
+                        if scene.parts().solids[solid].collides && work + cells.work <= MOST_CAST {
                             cast(sheet, &mut cells, surfaces, &surfaces.faces()[surfaces.of_solid(solid)], (&sun, bit));
                         }
                     },
                 );
+                work += cells.work;
+                if work > MOST_CAST {
+                    return (all, work);
+                }
             }
         }
-        cells
+        (all, work)
     }
 
     /// Casts the shadows of what moves on the floor and on these solids of the scene. Allocates when something moves for the
@@ -107,6 +126,7 @@ impl Shadows {
             self.sheets[*sheet as usize].restore(area, &mut self.now, &self.standing);
         }
         self.touched.clear();
+        self.work[1] = 0;
         if moving.is_empty() {
             return;
         }
@@ -132,6 +152,7 @@ impl Shadows {
                 }
             }
             let area = cells.drawn;
+            self.work[1] += cells.work;
             if area.is_some() {
                 self.touched.push((number, area));
             }

@@ -55,6 +55,8 @@ enum Common {
 pub(super) struct Cells<'a> {
     all: &'a mut [u8],
     pub(super) drawn: Area,
+    /// Rows of polygons that were drawn, and every sixteenth cell of them.
+    pub(super) work: u64,
 }
 
 /// A rectangle of cells: from the first column and row to those before the last.
@@ -156,7 +158,7 @@ impl Sheet {
 
     /// Its cells among all.
     pub(super) fn cells<'a>(&self, all: &'a mut [u8]) -> Cells<'a> {
-        Cells { all: &mut all[self.range()], drawn: Area::NONE }
+        Cells { all: &mut all[self.range()], drawn: Area::NONE, work: 0 }
     }
 
     /// Makes an area of some cells as it is in others.
@@ -271,6 +273,7 @@ impl Cells<'_> {
             (top, bottom) = (top.min(y), bottom.max(y));
             (point.x, point.y) = (x, y);
         }
+        self.work += polygon.len() as u64;
         let within = |value: f64, count: usize| (value + 0.5).clamp(edge as f64, (count - edge) as f64) as usize;
         for row in within(top, sheet.rows)..within(bottom, sheet.rows) {
             let middle = row as f64 + 0.5;
@@ -285,6 +288,7 @@ impl Cells<'_> {
             }
             let columns = within(left, sheet.columns)..within(right, sheet.columns);
             let base = row * sheet.columns;
+            self.work += 2 + columns.len() as u64 / 16;
             if let Some(cells) = self.all.get_mut(base + columns.start..base + columns.end) {
                 cells.iter_mut().for_each(|cell| *cell |= bits);
                 self.drawn.hold(&columns, row);

@@ -23,6 +23,8 @@ pub(super) struct Spans {
     /// First pixel of the polygon at hand in each row, and one past its last.
     bounds: [Vec<u16>; 2],
     rebuilt: Vec<Run>,
+    /// What was done since all runs were forgotten: rows of faces, and runs that were looked at or moved for them.
+    work: u64,
     processor: Processor,
 }
 
@@ -41,15 +43,22 @@ impl Spans {
             rows: (0..height_px).map(|_| Vec::with_capacity(64)).collect(),
             bounds: [vec![0; height_px], vec![0; height_px]],
             rebuilt: Vec::with_capacity(64),
+            work: 0,
             processor: Processor::best(),
         }
     }
 
     /// Forgets all runs.
     pub(super) fn clear(&mut self) {
+        self.work = 0;
         for row in &mut self.rows {
             row.clear();
         }
+    }
+
+    /// What was done since then, counted: the same on every machine.
+    pub(super) fn work(&self) -> u64 {
+        self.work
     }
 
     /// The runs of a row from left to right; what lies between them shows no face.
@@ -79,6 +88,7 @@ impl Spans {
             from = to;
         }
         let overlay = Overlay { face, nearness };
+        self.work += (last - first) as u64;
         for row in first..last {
             let [start, end] = [self.bounds[0][row], self.bounds[1][row]];
             if start < end {
@@ -87,6 +97,7 @@ impl Spans {
                 if runs.last().is_none_or(|last| last.end <= start) {
                     runs.push(run);
                 } else {
+                    self.work += runs.len() as u64;
                     overlay.insert(runs, &mut self.rebuilt, run, row);
                 }
             }

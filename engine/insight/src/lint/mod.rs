@@ -4,6 +4,7 @@
 //! for. Everything is deterministic: the same script and world give the same findings.
 
 mod choice;
+mod cost;
 mod exploit;
 mod filters;
 mod finding;
@@ -131,6 +132,7 @@ pub fn read(plan: &Plan) -> Vec<Finding> {
     units::check_units(plan, &mut findings);
     shadow::check_shadows(plan, &mut findings);
     loops::check_loops(plan, &mut findings);
+    cost::check_cost(plan, &mut findings);
     scale::written(plan, &mut findings);
     setup::check_setup(plan, &mut findings);
     choice::written(plan, &mut findings);

@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use engine::diagnostic::for_table;
+
 /// One window of the learning curve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CurveRow {
@@ -21,7 +23,7 @@ pub fn curve_csv(window_steps: u64, rules: &[String], rows: &[CurveRow]) -> Stri
     for rule in rules {
         out.push(',');
         // No two columns have one name.
-        out.push_str(&quoted(&if own.contains(rule) { format!("{rule} (rule)") } else { rule.clone() }));
+        out.push_str(&for_table(&if own.contains(rule) { format!("{rule} (rule)") } else { rule.clone() }));
     }
     out.push('\n');
     for row in rows {
@@ -36,15 +38,6 @@ pub fn curve_csv(window_steps: u64, rules: &[String], rows: &[CurveRow]) -> Stri
         out.push('\n');
     }
     out
-}
-
-/// A field as RFC 4180 wants it.
-pub(super) fn quoted(field: &str) -> String {
-    if field.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", field.replace('"', "\"\""))
-    } else {
-        field.to_owned()
-    }
 }
 
 #[cfg(test)]
@@ -62,6 +55,13 @@ mod tests {
             table,
             "step,reinforcement_per_500_steps,contact,\"near, \"\"left\"\"\"\n500,-20.5,-20.5,0\n1000,-1,-1,\n"
         );
+    }
+
+    #[test]
+    fn a_name_is_neither_a_formula_nor_a_command_to_the_terminal() {
+        let rules = ["=cmd|' /C calc'!A0", "\u{1b}[2J"].map(str::to_owned);
+        let heading = "step,reinforcement_per_10_steps,'=cmd|' /C calc'!A0,\\u{1b}[2J\n";
+        assert_eq!(curve_csv(10, &rules, &[]), heading);
     }
 
     #[test]

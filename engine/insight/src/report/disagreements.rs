@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::csv::quoted;
+use engine::diagnostic::for_table;
 use engine::experiment::Disagreements;
 use engine::geometry::Twist;
 
@@ -15,7 +15,7 @@ pub fn disagreements_csv(names: &[&str], actions: &[Twist], disagreements: &Disa
                    steps,first_won,second_won\n"
         .to_owned();
     for row in disagreements.by_frequency() {
-        let [first, second] = row.policies.map(|policy| quoted(names.get(policy).copied().unwrap_or_default()));
+        let [first, second] = row.policies.map(|policy| for_table(names.get(policy).copied().unwrap_or_default()));
         let [a, b] = row.actions.map(|action| {
             let twist = actions.get(action).copied().unwrap_or_default();
             format!("{action},{},{}", twist.linear_m_per_s, twist.angular_rad_per_s)

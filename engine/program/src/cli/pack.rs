@@ -39,6 +39,12 @@ pub(crate) enum PackCommand {
     /// Trust a key to sign an owner's packs, or never trust it again; without an owner, list the trusted keys
     #[command(after_help = PACK_STATUS)]
     Trust(TrustArguments),
+    /// Hand over to a new key: writes a statement, signed by the old one, that 'pack trust --said' takes
+    #[command(after_help = PACK_STATUS)]
+    Rotate(RotateArguments),
+    /// Revoke keys of yours: writes a numbered list, signed by your key, that 'pack trust --said' takes
+    #[command(after_help = PACK_STATUS)]
+    Revoke(RevokeArguments),
     /// Check a pack's digests and signature; with --replay, learn it again and compare
     #[command(after_help = PACK_STATUS)]
     Verify(VerifyArguments),
@@ -133,9 +139,53 @@ pub(crate) struct TrustArguments {
     /// Put the key in the place of another one of the owner
     #[arg(long, requires = "owner")]
     pub(crate) replace: bool,
+    /// Take what an owner said of their keys: a file of 'engine pack rotate' or 'engine pack revoke'
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["owner", "key", "replace", "revoke"])]
+    pub(crate) said: Option<PathBuf>,
     /// Never trust this key again, for nobody
     #[arg(long, requires = "key", conflicts_with_all = ["owner", "replace"])]
     pub(crate) revoke: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RotateArguments {
+    /// The owner whose packs both keys sign
+    pub(crate) owner: String,
+    /// The new public key, or the file that holds it
+    #[arg(long, value_name = "KEY")]
+    pub(crate) to: String,
+    #[command(flatten)]
+    pub(crate) signing: SigningArguments,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RevokeArguments {
+    /// The owner whose packs are meant
+    pub(crate) owner: String,
+    /// The public keys to revoke, or the files that hold them
+    #[arg(required = true)]
+    pub(crate) keys: Vec<String>,
+    /// Which list this is: one more than the last one that you gave away
+    #[arg(long, default_value_t = 1)]
+    pub(crate) number: u64,
+    #[command(flatten)]
+    pub(crate) signing: SigningArguments,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SigningArguments {
+    /// The secret key that signs the statement
+    #[arg(long, default_value = "pack.key", value_name = "FILE")]
+    pub(crate) key: PathBuf,
+    /// The day of the statement, such as 2026-11-28 [default: today]
+    #[arg(long, value_name = "DAY")]
+    pub(crate) date: Option<String>,
+    /// Where the statement goes [default: OWNER.rotation, OWNER.revoked]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Read the password from the first line of standard input
+    #[arg(long)]
+    pub(crate) password_stdin: bool,
 }
 
 #[derive(Debug, Args)]

@@ -66,9 +66,8 @@ pub(crate) fn run(arguments: &WatchArguments, console: &mut Console) -> Result<u
         return Ok(status);
     }
     tell(arguments, &address, out.as_deref(), console)?;
-    if !arguments.no_open {
-        open(&address.url);
-    }
+    // The file is removed when watching ends.
+    let _opened = if arguments.no_open { None } else { open(&address.url) };
     relearner.serve(&stop)?;
     Ok(0)
 }
@@ -178,11 +177,23 @@ fn without_terminal() -> ConsoleError {
     ConsoleError::Failed(Box::new(error.help("build it in: cargo build --release --features tui")))
 }
 
-/// Opens the browser if there is one; the address is printed anyhow.
+/// Opens the browser if there is one; the address is printed anyhow. It is told a file that only this user can read, and
+/// that leads on to the page: all users see the arguments of all programs, and the token is none of their business.
 #[cfg(feature = "serve")]
-fn open(url: &str) {
+fn open(url: &str) -> Option<tempfile::TempDir> {
     use std::process::{Command, Stdio};
+    let own = std::env::var_os("XDG_RUNTIME_DIR").map(std::path::PathBuf::from).filter(|folder| folder.is_dir());
+    let folder =
+        tempfile::Builder::new().prefix("engine-watch-").tempdir_in(own.unwrap_or_else(std::env::temp_dir)).ok()?;
+    let file = folder.path().join("open.html");
+    let page = format!(
+        "<!doctype html><meta charset=utf-8><meta name=referrer content=no-referrer>\n\
+         <meta http-equiv=refresh content=\"0; url={url}\"><title>engine watch</title>\n\
+         <p><a href=\"{url}\">the live page</a>\n"
+    );
+    insight::disk::write_atomic(&file, page.as_bytes()).ok()?;
     let program = if cfg!(target_os = "macos") { "open" } else { "xdg-open" };
-    let quiet = Command::new(program).arg(url).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
-    drop(quiet);
+    let mut command = Command::new(program);
+    command.arg(&file).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    command.spawn().ok().map(|_| folder)
 }

@@ -64,7 +64,8 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
     (
         "E-IMAGE-LIMIT",
         Kind::Input,
-        "An image has more bytes or more pixels than are read: 64 MiB and 50 megapixels.\n\
+        "An image has more bytes or more pixels than are read: 64 MiB, 50 megapixels, 150 MB once it is decoded; 16 megapixels as a\n\
+         progressive JPEG, whose decoder keeps every pixel twice more.\n\
          A small file can unpack into a huge picture, so the limit is checked first. Make the image smaller.",
     ),
     (

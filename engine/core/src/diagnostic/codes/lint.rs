@@ -5,6 +5,14 @@ use super::Kind;
 /// Each code with its page, in the order of the alphabet.
 pub(super) const PAGES: &[(&str, Kind, &str)] = &[
     (
+        "W-COST",
+        Kind::Input,
+        "A rule or `fn reward` takes a tenth or more of the operations that all rules of a step may take together.\n\
+         Every loop counts, and an array or a map that is read or compared counts by its length.\n\
+         Every step of learning is slow then, and a script that takes all of them is stopped. Do less in the loop, read arrays\n\
+         outside of it, or measure with the facts: laser.sector(0, 90).nearest is worth some hundred operations.",
+    ),
+    (
         "W-EXPLOIT",
         Kind::Input,
         "A behaviour that gets nowhere earns more than driving on: spinning in place, standing, U-turns. The learner will find it.\n\

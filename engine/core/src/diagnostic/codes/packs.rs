@@ -211,10 +211,23 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
          That holds for all that it ever signed. Get a version that was signed by the owner's new key.",
     ),
     (
+        "E-TRUST-ROLLBACK",
+        Kind::Trust,
+        "A statement of an owner on their keys is older than one that you have: a list of revoked keys with a lower number or an\n\
+         earlier day, or a key that hands over a second time. Somebody may want you to forget what was said since.\n\
+         Ask the owner for the newest one; engine pack trust lists what you have.",
+    ),
+    (
         "E-TRUST-SIGNATURE",
         Kind::Trust,
         "A signature is none, or does not fit the pack that it stands beside.\n\
          The pack or the signature was changed, or they belong to different packs. Get both again.",
+    ),
+    (
+        "E-TRUST-STATEMENT",
+        Kind::Trust,
+        "A file is no signed statement on keys, or its signature does not fit. engine pack rotate and engine pack revoke write such\n\
+         files. Get it again from its owner.",
     ),
     (
         "E-TRUST-STORE",

@@ -87,7 +87,8 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
     (
         "E-WORLD-SHADOWS",
         Kind::Input,
-        "Shadows are computed for every lit face of a world, and this world has too many solids for that.\n\
+        "Shadows are computed for every lit face of a world, and this world has too many solids for that, or solids so large that\n\
+         each shades all the others. The work is counted: the answer is the same on every machine.\n\
          Join solids, take some out, or leave light.shadows off.",
     ),
     (
@@ -108,5 +109,13 @@ pub(super) const PAGES: &[(&str, Kind, &str)] = &[
         "A number in the world file is outside of what can be built or simulated.\n\
          Lengths are in metres and angles in degrees: a room of 600 is usually one of 6, written in \
          centimetres.",
+    ),
+    (
+        "E-WORLD-WORK",
+        Kind::Input,
+        "One image and one scan of this world would take too long: the faces in sight cover too many rows of the image, one behind\n\
+         the other, or too many beams meet solids. The work is counted, not timed, so that a world is refused on every machine or\n\
+         on none. It is looked for at the starts before anybody learns, and in every step.\n\
+         Take out solids that stand within one another or are hidden behind others; a smaller image takes less, too.",
     ),
 ];

@@ -15,7 +15,7 @@ use filter_api::abi::{
 use filter_api::{Descriptor, Format, Frame, FrameMut, Mount, Moved};
 use libloading::Library;
 
-use super::library;
+use super::{library, rounding};
 use crate::diagnostic::{Diagnostic, Result, printable};
 use crate::filter::described::{
     DescribedFilter, DescribedParameter, LONGEST_TEXT_BYTES, MOST_PARAMETERS, check_frames,
@@ -71,7 +71,7 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<LoadedLibrary> {
         Box::new(Diagnostic::new("E-NATIVE-ABI", message).help(help))
     };
     // SAFETY: loading runs the library's constructors; the user allowed this very file to do so.
-    let library = unsafe { Library::new(&copy) }.map_err(|error| wrong(&error))?;
+    let library = rounding::kept(|| unsafe { Library::new(&copy) }).map_err(|error| wrong(&error))?;
     // Never unloaded: threads, statics and destructors of a library outlive its last filter.
     let library: &'static Library = Box::leak(Box::new(library));
     // SAFETY: `library::read` found a symbol of this name, of the size and version of a `RawPlugin`.
@@ -157,12 +157,14 @@ impl Native {
         let mut instance = null_mut();
         let mut message = ForeignText::default();
         // SAFETY: the arguments are as the law says, and live through the call.
-        let status = unsafe { create(values.as_ptr(), values.len() as u32, &raw mut instance, message.pointer()) };
+        let status = rounding::kept(|| unsafe {
+            create(values.as_ptr(), values.len() as u32, &raw mut instance, message.pointer())
+        });
         message.outcome(status)?;
         let mut native = Self { process, destroy, whole, instance, keeps: 0 };
         if let Some(keeps) = whole.and_then(|whole| whole.keeps) {
             // SAFETY: the instance is the library's own.
-            native.keeps = unsafe { keeps(instance) } as usize;
+            native.keeps = rounding::kept(|| unsafe { keeps(instance) }) as usize;
         }
         if native.keeps > MOST_KEPT_BYTES {
             let words = format!("it wants to keep {} bytes; a filter may keep {MOST_KEPT_BYTES}", native.keeps);
@@ -183,7 +185,7 @@ impl Native {
         let raw = RawMount { focal_px, forward_m, height_m, tilt_sin, tilt_cos, fisheye: fisheye.into() };
         let mut message = ForeignText::default();
         // SAFETY: the instance is the library's own; the arguments live through the call.
-        let status = unsafe { function(self.instance, &raw const raw, message.pointer()) };
+        let status = rounding::kept(|| unsafe { function(self.instance, &raw const raw, message.pointer()) });
         message.outcome(status)
     }
 
@@ -193,7 +195,7 @@ impl Native {
             let Moved { driven_m, turned_rad, jumped } = *moved;
             let raw = RawMoved { driven_m, turned_rad, jumped: jumped.into() };
             // SAFETY: as in `mount`.
-            unsafe { function(self.instance, &raw const raw) }
+            rounding::kept(|| unsafe { function(self.instance, &raw const raw) });
         }
     }
 
@@ -201,7 +203,7 @@ impl Native {
     pub(super) fn save(&mut self, kept: &mut [u8]) {
         if let Some(function) = self.whole.and_then(|whole| whole.save).filter(|_| kept.len() == self.keeps) {
             // SAFETY: the instance is the library's own; there are as many bytes as it said.
-            unsafe { function(self.instance, kept.as_mut_ptr()) }
+            rounding::kept(|| unsafe { function(self.instance, kept.as_mut_ptr()) });
         }
     }
 
@@ -214,7 +216,8 @@ impl Native {
         let Some(function) = self.whole.and_then(|whole| whole.load) else { return Ok(()) };
         let mut message = ForeignText::default();
         // SAFETY: as in `save`.
-        let status = unsafe { function(self.instance, kept.as_ptr(), kept.len() as u32, message.pointer()) };
+        let status =
+            rounding::kept(|| unsafe { function(self.instance, kept.as_ptr(), kept.len() as u32, message.pointer()) });
         message.outcome(status)
     }
 
@@ -234,7 +237,9 @@ impl Native {
         let mut message = ForeignText::default();
         // SAFETY: the instance is the library's own; the frames are as the law says, equal in size, and live through the
         // call. The law forbids the library to write through the pixels of its input.
-        let status = unsafe { (self.process)(self.instance, &raw const from, &raw const to, message.pointer()) };
+        let status = rounding::kept(|| unsafe {
+            (self.process)(self.instance, &raw const from, &raw const to, message.pointer())
+        });
         message.outcome(status)
     }
 }
@@ -288,7 +293,7 @@ impl InProcess {
 impl Drop for Native {
     fn drop(&mut self) {
         // SAFETY: the instance is the library's own and is not used again.
-        unsafe { (self.destroy)(self.instance) }
+        rounding::kept(|| unsafe { (self.destroy)(self.instance) });
     }
 }
 

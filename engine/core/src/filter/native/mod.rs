@@ -3,9 +3,13 @@
 //! Without the cargo feature `native-filters` every library is refused.
 
 #[cfg(feature = "native-filters")]
+mod guarded;
+#[cfg(feature = "native-filters")]
 mod library;
 #[cfg(feature = "native-filters")]
 mod loaded;
+#[cfg(feature = "native-filters")]
+mod rounding;
 #[cfg(feature = "native-filters")]
 mod wire;
 #[cfg(feature = "native-filters")]
@@ -16,6 +20,8 @@ mod worker;
 #[cfg(not(feature = "native-filters"))]
 mod without;
 
+#[cfg(feature = "native-filters")]
+pub use wire::count_replies;
 #[cfg(not(feature = "native-filters"))]
 pub(super) use without::open;
 #[cfg(not(feature = "native-filters"))]

@@ -7,6 +7,7 @@ use std::io::{Error, ErrorKind, Read, Result, Write};
 
 use filter_api::{Format, Frame, FrameMut, Mount, Moved};
 
+use super::guarded::Guarded;
 use super::loaded::{Failure, Native};
 use super::wire_told::{read_kept, read_mount, read_moved, write_mount, write_moved};
 
@@ -98,14 +99,23 @@ pub(super) fn read_reply(from: &mut impl Read) -> Result<Reply> {
     if length > LONGEST_PAYLOAD_BYTES || status > 2 {
         return Err(Error::new(ErrorKind::InvalidData, "not a reply"));
     }
-    let mut payload = vec![0; length];
-    from.read_exact(&mut payload)?;
+    // What a worker promises takes no memory before it comes.
+    let mut payload = Vec::new();
+    if from.by_ref().take(length as u64).read_to_end(&mut payload)? < length {
+        return Err(ErrorKind::UnexpectedEof.into());
+    }
     let words = |payload: Vec<u8>| String::from_utf8_lossy(&payload).into_owned();
     Ok(match status {
         0 => Reply::Done(payload),
         1 => Reply::Failed(words(payload)),
         _ => Reply::Panicked(words(payload)),
     })
+}
+
+/// How many replies stand in bytes that a worker may have sent, up to the first that is none.
+#[must_use]
+pub fn count_replies(mut bytes: &[u8]) -> usize {
+    std::iter::from_fn(|| read_reply(&mut bytes).ok()).count()
 }
 
 /// What a filter did with a call.
@@ -118,7 +128,8 @@ pub(super) fn serve(
     create: impl Fn(&[f64]) -> Outcome<Native>,
 ) -> Result<()> {
     let mut instance = None;
-    let (mut input, mut output, mut frames) = (Vec::new(), Vec::new(), 0_u8);
+    let (mut input, mut output, mut frames) = (Guarded::default(), Guarded::default(), 0_u8);
+    let threads = threads();
     loop {
         let request = match read_array(from) {
             Ok([request]) => request,
@@ -149,11 +160,12 @@ pub(super) fn serve(
             (PROCESS, Some(instance)) => {
                 frames = frames.wrapping_add(1);
                 // What a filter leaves out must not look the same twice: the law says that it fills every pixel.
-                output.fill(frames);
-                process(from, instance, &mut input, &mut output)?.map(|()| output.clone())
+                output.pixels_mut().fill(frames);
+                process(from, instance, &mut input, &mut output)?.map(|()| output.pixels().to_vec())
             }
             _ => return Err(Error::new(ErrorKind::InvalidData, "not a request")),
         };
+        let done = done.and_then(|payload| alone(threads).map(|()| payload));
         let reply = match done {
             Ok(payload) => Reply::Done(payload),
             Err(Failure { panicked: true, words }) => Reply::Panicked(words),
@@ -166,8 +178,8 @@ pub(super) fn serve(
 fn process(
     from: &mut impl Read,
     instance: &mut Native,
-    input: &mut Vec<u8>,
-    output: &mut Vec<u8>,
+    input: &mut Guarded,
+    output: &mut Guarded,
 ) -> Result<Outcome<()>> {
     let invalid = |words: String| Error::new(ErrorKind::InvalidData, words);
     let (width, height) = (read_number(from)?, read_number(from)?);
@@ -175,12 +187,28 @@ fn process(
         Format::from_bit(read_number(from)? as u32).ok_or_else(|| invalid("not a format".to_owned()))
     };
     let (reads, writes) = (format()?, format()?);
-    input.resize(width * height * reads.channels(), 0);
-    output.resize(width * height * writes.channels(), 1);
-    from.read_exact(input)?;
-    let frame = Frame::new(width, height, reads, input).map_err(|error| invalid(error.0))?;
-    let to = FrameMut::new(width, height, writes, output).map_err(|error| invalid(error.0))?;
-    Ok(instance.process(frame, to))
+    input.resize(width * height * reads.channels());
+    output.resize(width * height * writes.channels());
+    from.read_exact(input.pixels_mut())?;
+    let frame = Frame::new(width, height, reads, input.pixels()).map_err(|error| invalid(error.0))?;
+    let to = FrameMut::new(width, height, writes, output.pixels_mut()).map_err(|error| invalid(error.0))?;
+    let done = instance.process(frame, to);
+    let overrun = output.overrun().map(|place| format!("it wrote outside of the frame that it is to fill, {place}"));
+    let overrun =
+        overrun.or_else(|| input.overrun().map(|place| format!("it wrote beside the frame that it reads, {place}")));
+    Ok(overrun.map_or(done, |words| Err(Failure { panicked: true, words })))
+}
+
+/// The threads of this process, where the system tells them.
+fn threads() -> Option<usize> {
+    Some(std::fs::read_dir("/proc/self/task").ok()?.count())
+}
+
+/// Refuses a filter that has started a thread: what it does between calls is the same on no two machines.
+fn alone(before: Option<usize>) -> Outcome<()> {
+    let started = threads().zip(before).map_or(0, |(now, before)| now.saturating_sub(before));
+    let words = format!("it started {started} threads that still run after the call: a filter works within its calls");
+    if started == 0 { Ok(()) } else { Err(Failure { panicked: true, words }) }
 }
 
 pub(super) fn read_array<const N: usize>(from: &mut impl Read) -> Result<[u8; N]> {

@@ -22,6 +22,8 @@ use crate::filter::trust::Trust;
 const START: Duration = Duration::from_secs(5);
 /// How long a filter may take for one frame.
 const FRAME: Duration = Duration::from_secs(2);
+/// What a filter did whose process ended with a status of its own.
+const EXITED: &str = ": it left the program by itself, as with exit()";
 
 /// Describes a library that the user allowed, in a worker that `program` starts as `program filter-worker LIBRARY`.
 ///
@@ -225,7 +227,9 @@ impl Worker {
             std::thread::sleep(Duration::from_millis(50));
             self.child.try_wait().ok().flatten()
         });
-        status.map_or("its worker closed the channel".to_owned(), |status| format!("its worker ended ({status})"))
+        status.map_or("its worker closed the channel".to_owned(), |status| {
+            format!("its worker ended ({status}){}", if status.code().is_some() { EXITED } else { "" })
+        })
     }
 }
 

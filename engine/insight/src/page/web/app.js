@@ -34,10 +34,10 @@ function showDocument(doc, before) {
   chooseRuleInks(doc.rules);
   document.querySelector('main').hidden = false;
   const more = worldsOf(doc).length - 1;
-  document.title = `${doc.behaviour} in ${doc.world.name}${more ? ` and ${more} more` : ''}`;
+  document.title = visible(`${doc.behaviour} in ${doc.world.name}${more ? ` and ${more} more` : ''}`);
   $('title').textContent = document.title;
   $('from').hidden = !doc.from;
-  $('from').textContent = doc.from ? `Goes on from ${doc.from}.` : '';
+  $('from').textContent = doc.from ? visible(`Goes on from ${doc.from}.`) : '';
   const kept = app.picked ? doc.seeds.findIndex((seed) => seed.seed === wasSeed) : -1;
   app.seed = Math.max(0, kept >= 0 ? kept : doc.seeds.findIndex((seed) => seed.shown_first));
   $('seed').replaceChildren(...doc.seeds.map((seed, index) => el('option', {
@@ -242,7 +242,7 @@ function drawFrame(now) {
   turnToWorld(steps, steps ? steps.index(app.step) : -1);
   if (stale.base) {
     map.drawBase(app.doc, steps, app.litRule);
-    $('map-note').textContent = `${worldsOf(app.doc).length > 1 ? `${map.ground(app.doc).name}, ` : ''}${mapNote(app.doc, steps, app.phase)}`;
+    $('map-note').textContent = visible(`${worldsOf(app.doc).length > 1 ? `${map.ground(app.doc).name}, ` : ''}${mapNote(app.doc, steps, app.phase)}`);
     curve.drawBase(app.doc, seedView(), app.before);
     timeline.drawBase(app.doc, steps, app.litRule, app.phase === 'learning' ? app.doc.swaps : []);
     curve.stale = true;
@@ -282,19 +282,19 @@ function key(event) {
 function message(said) {
   if (said.kind === 'working') {
     $('status').className = 'busy';
-    $('status').textContent = said.text;
+    $('status').textContent = visible(said.text);
   } else if (said.kind === 'failed') {
     $('status').className = '';
     $('status').textContent = app.doc ? 'the last good run stays on screen' : '';
     $('error').hidden = false;
     $('error-text').replaceChildren(...said.blocks.map((text) => el('pre', { text })));
-    $('error-count').textContent = said.summary ?? '';
+    $('error-count').textContent = visible(said.summary ?? '');
     const here = [said.error, ...said.error.others].filter((one) => app.doc && one.file === app.doc.script_path);
     script.wrong(here.map((one) => one.line));
   } else if (said.kind === 'run') {
     $('error').hidden = true;
     $('status').className = said.done ? '' : 'busy';
-    $('status').textContent = said.text;
+    $('status').textContent = visible(said.text);
     app.save = said.save;
     showDocument(said.document, said.before);
   } else if (app.doc && said.save === app.save) {

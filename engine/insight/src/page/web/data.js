@@ -2,11 +2,17 @@
 
 const $ = (id) => document.getElementById(id);
 
+/** Names of strangers: what turns a line around or is not seen is written out. */
+function visible(text) {
+  return String(text).replace(/[\u0000-\u0008\u000b-\u001f\u007f-\u009f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]/g,
+    (c) => `\\u{${c.codePointAt(0).toString(16)}}`);
+}
+
 /** An element; text is only ever set as text. */
 function el(tag, properties = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(properties)) {
-    if (name === 'text') made.textContent = value;
+    if (name === 'text') made.textContent = visible(value ?? '');
     else if (name === 'class') made.className = value;
     else if (name.startsWith('on')) made.addEventListener(name.slice(2), value);
     else if (value !== undefined && value !== false) made.setAttribute(name, value === true ? '' : value);

@@ -22,7 +22,8 @@ function showStep(doc, track, index, step) {
   if (box.children.length !== 2 * rows.length) box.replaceChildren(...rows.flatMap(([name]) => [el('dt', { text: name }), el('dd')]));
   rows.forEach(([, words], row) => {
     const cell = box.children[2 * row + 1];
-    if (cell.textContent !== words) cell.textContent = words;
+    const shown = visible(words);
+    if (cell.textContent !== shown) cell.textContent = shown;
   });
 }
 
@@ -126,7 +127,7 @@ class Script {
   }
 
   draw(doc) {
-    $('script-path').textContent = doc.script_path;
+    $('script-path').textContent = visible(doc.script_path);
     const owner = (number) => doc.rules.findIndex((rule) => number >= rule.line && number < rule.line + rule.lines);
     const texts = doc.script.replace(/\n$/, '').split('\n');
     this.lines = texts.map((text, index) => {

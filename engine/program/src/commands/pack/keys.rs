@@ -49,8 +49,11 @@ pub(super) fn sign(arguments: &SignArguments, console: &mut Console) -> std::res
 }
 
 pub(super) fn trust(arguments: &TrustArguments, console: &mut Console) -> std::result::Result<u8, ConsoleError> {
+    if let Some(said) = &arguments.said {
+        return super::statements::take(said, console);
+    }
     let places = Places::find()?;
-    let TrustArguments { owner, key, replace, revoke } = arguments;
+    let TrustArguments { owner, key, replace, revoke, .. } = arguments;
     let _held = key.as_ref().map(|_| places.hold_trust()).transpose()?;
     let mut store = places.trust()?;
     match (owner, key) {
@@ -61,6 +64,15 @@ pub(super) fn trust(arguments: &TrustArguments, console: &mut Console) -> std::r
             }
             for known in store.keys() {
                 console.line(&format!("{:20} {}  {}", known.owner, key_id(&known.key)?, known.key))?;
+            }
+            for old in store.retired() {
+                let (id, by) = (key_id(&old.key)?, key_id(&old.by)?);
+                console.line(&format!("{:20} {id}  handed over to {by} on {}", old.owner, old.date))?;
+            }
+            for list in store.lists() {
+                let keys = list.keys.len();
+                console
+                    .line(&format!("{:20} list {} of {} revokes {keys} keys", list.owner, list.number, list.date))?;
             }
         }
         (_, Some(key)) if *revoke => {
@@ -93,7 +105,7 @@ fn with_ending(name: &Path, ending: &str) -> PathBuf {
 }
 
 /// A password from the terminal, or from standard input if that was asked for.
-fn password(from_input: bool) -> Result<Password> {
+pub(super) fn password(from_input: bool) -> Result<Password> {
     if from_input {
         let mut line = String::new();
         std::io::stdin()

@@ -10,6 +10,7 @@ pub(super) mod places;
 #[cfg(feature = "share")]
 mod registry;
 mod share;
+mod statements;
 mod verify;
 
 use crate::cli::{PackArguments, PackCommand};
@@ -23,6 +24,8 @@ pub(crate) fn run(arguments: &PackArguments, console: &mut Console) -> Result<u8
         PackCommand::Keygen(arguments) => keys::keygen(arguments, console),
         PackCommand::Sign(arguments) => keys::sign(arguments, console),
         PackCommand::Trust(arguments) => keys::trust(arguments, console),
+        PackCommand::Rotate(arguments) => statements::rotate(arguments, console),
+        PackCommand::Revoke(arguments) => statements::revoke(arguments, console),
         PackCommand::Verify(arguments) => verify::verify(arguments, console),
         PackCommand::Inspect(arguments) => inspect::inspect(arguments, console),
         PackCommand::Install(arguments) => install::install(arguments, console),

@@ -31,6 +31,9 @@ const EMPTY_TYPE: &str = "application/vnd.oci.empty.v1+json";
 const MAX_SIGNATURE_BYTES: usize = 16 << 10;
 const CONNECT: Duration = Duration::from_secs(10);
 const READ: Duration = Duration::from_secs(60);
+/// How long a file may take in all: a server that sends a byte a second holds nobody up for ever.
+const WHOLE: Duration = Duration::from_secs(600);
+const MOST_REDIRECTS: usize = 5;
 
 /// The bytes of a pack and the text of its signature.
 pub(super) fn fetch(address: &str) -> Result<(Vec<u8>, Option<String>)> {
@@ -306,10 +309,30 @@ async fn only_layer(
 }
 
 async fn download(address: &str) -> std::result::Result<(Vec<u8>, Option<String>), Failure> {
-    let client = reqwest::Client::builder().https_only(true).connect_timeout(CONNECT).read_timeout(READ).build()?;
+    let client = reqwest::Client::builder().https_only(true).connect_timeout(CONNECT).read_timeout(READ);
+    let client = client.timeout(WHOLE).redirect(redirects()).build()?;
     let bytes = get(&client, address, MAX_PACK_BYTES).await?.ok_or("there is no such file")?;
     let signature = get(&client, &format!("{address}.minisig"), MAX_SIGNATURE_BYTES).await?;
     Ok((bytes, signature.map(String::from_utf8).transpose()?))
+}
+
+/// What a server may answer instead of a file: a few addresses, https alone, and to another server nothing that was only
+/// meant for the first: an address with a name and a password in it leads nowhere else.
+fn redirects() -> reqwest::redirect::Policy {
+    reqwest::redirect::Policy::custom(|attempt| {
+        let (first, next) = (attempt.previous().first(), attempt.url());
+        let elsewhere = first.is_some_and(|first| {
+            (first.host_str(), first.port_or_known_default()) != (next.host_str(), next.port_or_known_default())
+        });
+        let secret = first.is_some_and(|first| !first.username().is_empty() || first.password().is_some());
+        if attempt.previous().len() > MOST_REDIRECTS {
+            attempt.error("it leads on and on")
+        } else if next.scheme() != "https" || !next.username().is_empty() || (elsewhere && secret) {
+            attempt.error("it leads to where a pack must not be fetched from")
+        } else {
+            attempt.follow()
+        }
+    })
 }
 
 /// A file of at most so many bytes; nothing if the server has none.

@@ -48,7 +48,7 @@ pub(super) fn verify(arguments: &VerifyArguments, console: &mut Console) -> std:
 pub(super) fn signed_by(signer: &Signer) -> Result<String> {
     Ok(match signer {
         Signer::Nobody => "none, which you accepted".to_owned(),
-        Signer::Trusted { key } => format!("valid, by key {}", key_id(key)?),
+        Signer::Trusted { key, .. } => format!("valid, by key {}", key_id(key)?),
     })
 }
 
