@@ -122,7 +122,13 @@ fn a_forged_figure_curve_or_table_is_no_run_that_was_reproduced() {
     forged("curve.csv", last, &format!("{last}1"), "curve.csv");
     let policy = bench.read("a/policy.toml");
     let visits = policy.lines().find(|line| line.starts_with("visits")).unwrap();
-    forged("policy.toml", visits, &format!("{visits}0"), "policy.toml");
+    bench.write("a/policy.toml", policy.replacen(visits, &format!("{visits}0"), 1));
+    let told = bench.failure(&["replay", "a", "--verify"]);
+    assert!(
+        told.starts_with("exit status 7") && told.contains("error[E-LOG-RUN]: 'a/policy.toml' does not hold"),
+        "{told}"
+    );
+    bench.write("a/policy.toml", &policy);
     assert!(bench.ok(&["replay", "a", "--verify"]).contains("and every figure"));
 }
 

@@ -262,7 +262,8 @@ mod tests {
 
         write(&place.path().join("1.2"), &["mine"]);
         std::fs::rename(&now, &old).unwrap();
-        write(&now, &["run.toml", "log.bin"]);
+        write(&now, &["log.bin"]);
+        std::fs::write(now.join("run.toml"), "seed = 2\n").unwrap();
         assert_eq!(set_aside(&old, &now, &now).unwrap(), Some(place.path().join("1.3")));
         retire(&old, &now).unwrap();
         let kept = place.path().join("1.3");
