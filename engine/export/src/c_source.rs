@@ -174,70 +174,65 @@ fn source(model: &Model) -> Vec<(&'static str, String)> {
 }
 
 fn tables(model: &Model) -> String {
-    let mut text = String::new();
-    if model.guards.is_empty() {
-        text.push_str("/* The best action of each state; 255 where nothing is known. */\nstatic const uint8_t best[BEHAVIOUR_STATES] = {\n");
-        text.push_str(&rows_of(model.order.iter().map(|order| order.first().unwrap_or(&UNKNOWN).to_string()), "    "));
-        text.push_str("};\n");
-    } else {
-        text.push_str("/* The actions of each state, the best first; 255 where nothing is known. */\n");
-        text.push_str("static const uint8_t order[BEHAVIOUR_STATES][BEHAVIOUR_ACTIONS] = {\n");
-        for order in &model.order {
-            let numbers: Vec<String> = order.iter().map(u8::to_string).collect();
-            let _ = writeln!(text, "    {{{}}},", numbers.join(", "));
-        }
-        text.push_str(
-            "};\n/* All actions, the slowest first. */\nstatic const uint8_t slow_first[BEHAVIOUR_ACTIONS] = {\n",
-        );
-        text.push_str(&rows_of(slow_first(&model.actions).iter().map(usize::to_string), "    "));
-        let _ = write!(
-            text,
-            "}};\n/* A bit for each action that a guard forbids. */\nstatic const uint64_t forbids[{}] = {{\n",
-            model.guards.len()
-        );
-        let actions = u64::MAX >> (64 - model.actions.len().clamp(1, 64));
-        text.push_str(&rows_of(
-            model.guards.iter().map(|guard| format!("{:#x}u", guard.forbids.bits() & actions)),
-            "    ",
-        ));
-        text.push_str("};\n");
-    }
-    text.push_str(
-        "/* A bit for each state that learning came to. */\nstatic const uint8_t met[(BEHAVIOUR_STATES + 7) / 8] = {\n",
-    );
+    let mut text = if model.guards.is_empty() { best(model) } else { order(model) };
     let bytes = model.met.chunks(8).map(|eight| eight.iter().rev().fold(0_u8, |byte, met| byte << 1 | u8::from(*met)));
-    text.push_str(&rows_of(bytes.map(|byte| format!("0x{byte:02x}")), "    "));
-    text.push_str("};\n");
-    for (index, view) in model.views.iter().enumerate() {
-        let mut table = |name: &str, numbers: &mut dyn Iterator<Item = String>| {
-            let numbers: Vec<String> = numbers.collect();
-            let _ = write!(
-                text,
-                "static const uint16_t {name}_{index}[{}] = {{\n{}}};\n",
-                numbers.len(),
-                rows_of(numbers.into_iter(), "    ")
-            );
-        };
-        table("row_edges", &mut view.row_edges.iter().map(usize::to_string));
-        table("column_edges", &mut view.column_edges.iter().map(usize::to_string));
-        table("least", &mut view.least.iter().map(u32::to_string));
-        for (stage, filter) in view.stages.iter().enumerate() {
-            if let Stage::Horizon { cleared } = filter {
-                table(&format!("cleared_{stage}"), &mut cleared.iter().map(usize::to_string));
-            }
-        }
-        for (stage, filter) in view.stages.iter().enumerate() {
-            if let Stage::Blur { weights } = filter {
-                let numbers = rows_of(weights.iter().map(u32::to_string), "    ");
-                let _ = write!(
-                    text,
-                    "static const uint32_t weights_{stage}_{index}[{}] = {{\n{numbers}}};\n",
-                    weights.len()
-                );
-            }
+    let bytes = rows_of(bytes.map(|byte| format!("0x{byte:02x}")), "    ");
+    let _ = write!(
+        text,
+        "/* A bit for each state that learning came to. */\nstatic const uint8_t met[(BEHAVIOUR_STATES + 7) / 8] = {{\n{bytes}}};\n"
+    );
+    model.views.iter().enumerate().for_each(|(index, view)| view_tables(index, view, &mut text));
+    text
+}
+
+fn best(model: &Model) -> String {
+    let best = rows_of(model.order.iter().map(|order| order.first().unwrap_or(&UNKNOWN).to_string()), "    ");
+    format!(
+        "/* The best action of each state; 255 where nothing is known. */\nstatic const uint8_t best[BEHAVIOUR_STATES] = {{\n{best}}};\n"
+    )
+}
+
+/// Where guards may forbid the best action: all of them in their order, and what each guard forbids.
+fn order(model: &Model) -> String {
+    let mut text = "/* The actions of each state, the best first; 255 where nothing is known. */\n\
+                    static const uint8_t order[BEHAVIOUR_STATES][BEHAVIOUR_ACTIONS] = {\n"
+        .to_owned();
+    for order in &model.order {
+        let numbers: Vec<String> = order.iter().map(u8::to_string).collect();
+        let _ = writeln!(text, "    {{{}}},", numbers.join(", "));
+    }
+    let slow = rows_of(slow_first(&model.actions).iter().map(usize::to_string), "    ");
+    let actions = u64::MAX >> (64 - model.actions.len().clamp(1, 64));
+    let forbids = model.guards.iter().map(|guard| format!("{:#x}u", guard.forbids.bits() & actions));
+    let _ = write!(
+        text,
+        "}};\n/* All actions, the slowest first. */\nstatic const uint8_t slow_first[BEHAVIOUR_ACTIONS] = {{\n{slow}}};\n\
+         /* A bit for each action that a guard forbids. */\nstatic const uint64_t forbids[{}] = {{\n{}}};\n",
+        model.guards.len(),
+        rows_of(forbids, "    ")
+    );
+    text
+}
+
+/// The edges of a view's cells, the pixels from which each is occupied, and what its filters look up.
+fn view_tables(index: usize, view: &View, text: &mut String) {
+    let mut table = |kind: &str, name: &str, numbers: Vec<String>| {
+        let count = numbers.len();
+        let rows = rows_of(numbers.into_iter(), "    ");
+        let _ = write!(text, "static const {kind} {name}_{index}[{count}] = {{\n{rows}}};\n");
+    };
+    let numbers = |numbers: &[usize]| numbers.iter().map(usize::to_string).collect();
+    let wide = |numbers: &[u32]| numbers.iter().map(u32::to_string).collect();
+    table("uint16_t", "row_edges", numbers(&view.row_edges));
+    table("uint16_t", "column_edges", numbers(&view.column_edges));
+    table("uint32_t", "least", wide(&view.least));
+    for (stage, filter) in view.stages.iter().enumerate() {
+        match filter {
+            Stage::Horizon { cleared } => table("uint16_t", &format!("cleared_{stage}"), numbers(cleared)),
+            Stage::Blur { weights } => table("uint32_t", &format!("weights_{stage}"), wide(weights)),
+            _ => {}
         }
     }
-    text
 }
 
 /// The functions of the filters that are used, each once.

@@ -61,8 +61,8 @@ impl Stage {
         let filters = if view.filters.is_empty() { &default[..] } else { &view.filters };
         let stages = filters.iter().map(|filter| Self::new(plan, filter, size_px)).collect::<Result<Vec<_>>>()?;
         let colour = |stage: &Self| stage.reads() == Reads::Colour;
-        let others = plan.settings.views().flat_map(|view| view.filters.first());
-        let in_colour = others.map(|filter| matches!(filter.name.as_str(), "colour" | "chroma")).any(|colour| colour);
+        let mut others = plan.settings.views().flat_map(|view| view.filters.first());
+        let in_colour = others.any(|filter| matches!(filter.name.as_str(), "colour" | "chroma"));
         let first = if in_colour && !stages.first().is_some_and(colour) { Some(Self::Luma) } else { None };
         Ok(first.into_iter().chain(stages).collect())
     }

@@ -1,6 +1,6 @@
 
 /* The heights of the columns, the left one the lowest digit. */
-static uint32_t height_number(const uint32_t *count, const uint16_t *least, int rows, int columns, uint32_t base)
+static uint32_t height_number(const uint32_t *count, const uint32_t *least, int rows, int columns, uint32_t base)
 {
     uint32_t number = 0;
     for (int column = columns - 1; column >= 0; column--) {
