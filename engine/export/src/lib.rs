@@ -1,6 +1,6 @@
 //! A learned policy as source code for other programs: C99 and Python with numpy, with a kit that checks both.
 //!
-//! [`Model`] is what a port has to do, as numbers; [`c_source`] and [`numpy_source`] write it down; [`conformance`] plays the run's own
+//! [`Model`] is what a port has to do, as numbers; `c_source` and `numpy_source` write it down; `conformance` plays the run's own
 //! test again and keeps what the engine saw and chose. Nothing here drives a robot.
 
 mod c_source;
