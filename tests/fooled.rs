@@ -195,11 +195,13 @@ fn a_fig_leaf_that_any_two_robots_meet_does_not_make_a_reward_a_success() {
         assert_eq!(runs[0].verdict.why, Because::RewardOnly, "{leaf}");
         assert_eq!(runs[0].base_lines.untrained_others.len(), 3);
     }
-    // Beside what no robot that knows nothing meets a reward may be asked for: who does not look is another question.
+    // Beside what neither chance nor a robot that does not look comes to, a reward may be asked for.
     let wall = std::fs::read_to_string(root().join("scripts/wall.rhai")).unwrap();
-    let rules = wall.lines().filter(|line| line.starts_with("rule")).collect::<Vec<_>>().join("\n");
-    let earns = "success \"earns\" when test.reward_per_1000 > -10 && test.failures_per_1000 <= 5;";
-    assert_ne!(runs(&format!("{rules}\n{earns}"), None, 2000, 1)[0].verdict.why, Because::RewardOnly);
+    let earns = "success \"earns\" when test.reward_per_1000 > -10 && test.metres_per_intervention >= 20;";
+    let own = |line: &&str| !line.starts_with("world") && !line.starts_with("filter");
+    let wall = wall.lines().filter(own).collect::<Vec<_>>().join("\n");
+    let honest = runs(&format!("{wall}\n{earns}"), None, 5000, 1);
+    assert_eq!(honest[0].verdict.why, Because::Holds, "{:?}", honest[0].verdict);
 }
 
 #[test]
