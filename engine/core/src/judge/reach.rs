@@ -1,7 +1,7 @@
 //! Whether a rule can fire at all, and a guard or a use hold: intervals through its condition.
 
-use super::asked_range::AskedRange;
-use super::expression::{Arithmetic, BeamSpan, Comparison, Flag, Number};
+use super::asked_range::{ANYWHERE, AskedRange, Interval, may_hold, words};
+use super::expression::{Arithmetic, BeamSpan, Flag, Number};
 use super::fact_columns::Reach;
 use super::fact_table::FactId;
 use super::facts::{Facts, decimal};
@@ -12,10 +12,6 @@ use super::uses::CompiledUse;
 use crate::diagnostic::{Diagnostic, Result, SourceText, printable};
 use crate::settings::LaserSettings;
 use std::ops::Range;
-
-type Interval = (f64, f64);
-
-const ANYWHERE: Interval = (f64::NEG_INFINITY, f64::INFINITY);
 
 /// The least and the greatest that the laser can measure, beam by beam.
 ///
@@ -118,14 +114,7 @@ fn impossible(flag: &Flag, limits: &Limits) -> Option<String> {
         }
         Flag::Compare(comparison, pair) => {
             let (a, b) = (interval(&pair[0], limits), interval(&pair[1], limits));
-            let possible = match comparison {
-                Comparison::Less => a.0 < b.1,
-                Comparison::LessOrEqual => a.0 <= b.1,
-                Comparison::Greater => a.1 > b.0,
-                Comparison::GreaterOrEqual => a.1 >= b.0,
-                Comparison::Equal => a.0 <= b.1 && b.0 <= a.1,
-                Comparison::Unequal => true,
-            };
+            let possible = may_hold(*comparison, a, b);
             let fact = if matches!(pair[0], Number::Constant(_)) { b } else { a };
             (!possible).then(|| format!("this is {}", words(fact)))
         }
@@ -173,15 +162,6 @@ fn contradiction(all: &[Flag]) -> Option<String> {
     let pairs = asked.iter().enumerate().flat_map(|(index, one)| asked[..index].iter().map(move |other| (other, one)));
     let excluded = pairs.into_iter().any(|(one, other)| one.excludes(other));
     excluded.then(|| "one part of this excludes another".to_owned())
-}
-
-fn words((low, high): Interval) -> String {
-    match (low.is_finite(), high.is_finite()) {
-        (true, true) if low == high => format!("always {low}"),
-        (true, true) => format!("always between {low} and {high}"),
-        (true, false) => format!("never less than {low}"),
-        _ => format!("never more than {high}"),
-    }
 }
 
 /// Between which values a number lies; wider where nothing better is known.

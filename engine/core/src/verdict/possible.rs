@@ -3,13 +3,8 @@
 use super::asked::Probe;
 use super::figures::{Source, TestFigure};
 use super::term::{FigureUse, Term};
-use crate::judge::asked_range::AskedRange;
-use crate::judge::expression::{Arithmetic, Comparison};
-
-/// Least and greatest value.
-type Interval = (f64, f64);
-
-const ANYWHERE: Interval = (f64::NEG_INFINITY, f64::INFINITY);
+use crate::judge::asked_range::{ANYWHERE, AskedRange, Interval, may_hold, words};
+use crate::judge::expression::Arithmetic;
 const NOT_NEGATIVE: Interval = (0.0, f64::INFINITY);
 
 /// Why a condition never holds, whatever a test comes to; nothing if it may.
@@ -24,14 +19,7 @@ pub(crate) fn why_never(term: &Term) -> Option<String> {
         Term::Or(any) => any.iter().map(why_never).collect::<Option<Vec<_>>>()?.into_iter().next(),
         Term::Compare(comparison, sides) => {
             let (a, b) = (interval(&sides[0]), interval(&sides[1]));
-            let possible = match comparison {
-                Comparison::Less => a.0 < b.1,
-                Comparison::LessOrEqual => a.0 <= b.1,
-                Comparison::Greater => a.1 > b.0,
-                Comparison::GreaterOrEqual => a.1 >= b.0,
-                Comparison::Equal => a.0 <= b.1 && b.0 <= a.1,
-                Comparison::Unequal => true,
-            };
+            let possible = may_hold(*comparison, a, b);
             let read = if matches!(sides[0], Term::Constant(_)) { b } else { a };
             (!possible).then(|| format!("this is {}", words(read)))
         }
@@ -105,15 +93,6 @@ impl TestFigure {
             Source::Route(_) if self.name == "route_offset_m" => NOT_NEGATIVE,
             _ => ANYWHERE,
         }
-    }
-}
-
-fn words((low, high): Interval) -> String {
-    match (low.is_finite(), high.is_finite()) {
-        (true, true) if low == high => format!("always {low}"),
-        (true, true) => format!("always between {low} and {high}"),
-        (true, false) => format!("never less than {low}"),
-        _ => format!("never more than {high}"),
     }
 }
 

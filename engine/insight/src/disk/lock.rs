@@ -6,6 +6,7 @@ use std::io::{Read, Result as IoResult, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use super::calendar::date;
 use super::{LOCK, PART, folder_of, name_of};
 use engine::diagnostic::{Diagnostic, Result, printable};
 
@@ -131,19 +132,6 @@ fn since(time: SystemTime) -> String {
     let (year, month, day) = date(days);
     let (hour, minute, second) = (of_day / 3600, of_day / 60 % 60, of_day % 60);
     format!(", since {year}-{month:02}-{day:02} {hour:02}:{minute:02}:{second:02} UTC")
-}
-
-/// Year, month and day of so many days after 1970-01-01, in the calendar of Gregory.
-fn date(days: u64) -> (u64, u64, u64) {
-    // Years that begin in March: then the day that only some have is the last.
-    let days = days + 719_468;
-    let (era, of_era) = (days / 146_097, days % 146_097);
-    let year = (of_era - of_era / 1460 + of_era / 36_524 - of_era / 146_096) / 365;
-    let of_year = of_era - (365 * year + year / 4 - year / 100);
-    let month = (5 * of_year + 2) / 153;
-    let day = of_year - (153 * month + 2) / 5 + 1;
-    let month = if month < 10 { month + 3 } else { month - 9 };
-    (year + era * 400 + u64::from(month <= 2), month, day)
 }
 
 /// Removes files that a killed process has not made whole; of one that cannot be removed nothing is said.

@@ -3,6 +3,7 @@
 //! | file | what |
 //! |---|---|
 //! | `atomic` | a file, replaced as a whole |
+//! | `calendar` | the day on which a lock was taken, or a word signed |
 //! | `lock` | one writer of a file or folder, who is named to others |
 //! | `staged` | a folder, made beside its place and swapped in |
 //! | `together` | files that come into a folder together |
@@ -12,12 +13,14 @@
 //! only "there is no such file" means that there is none.
 
 mod atomic;
+mod calendar;
 mod lock;
 mod reading;
 mod staged;
 mod together;
 
 pub use atomic::write_atomic;
+pub use calendar::date;
 pub use lock::Lock;
 pub use reading::{is_there, open_file, read_file};
 pub use staged::{RESUMABLE, Staged};

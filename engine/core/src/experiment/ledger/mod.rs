@@ -95,13 +95,13 @@ impl Ledger {
         if more == 0 { ledger } else { Self { tail: Tail::new(ledger.shape.bytes(), more), ..ledger } }
     }
 
-    /// The same ledger after whose records these segments followed.
+    /// This ledger with the segments that followed its records.
     #[must_use]
     pub fn followed_by(self, segments: Vec<Segment>) -> Self {
         Self { tail: Tail::of(segments), ..self }
     }
 
-    /// The same ledger with so many records of the segments that follow, which are read where they lie.
+    /// This ledger with so many records of the segments that follow, which are read where they lie.
     #[must_use]
     pub fn with_pages(self, stored: Arc<dyn StoredSegments>, records: u64) -> Self {
         Self { pages: Some(Pages::new(stored, records)), ..self }

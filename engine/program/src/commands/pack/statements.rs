@@ -77,16 +77,9 @@ fn day(signing: &SigningArguments) -> String {
     signing.date.clone().unwrap_or_else(|| day_of(now() / 86_400))
 }
 
-/// A day by its number since 1970, by the algorithm of Howard Hinnant (days_from_civil and back).
+/// A day by its number since 1970.
 fn day_of(days: u64) -> String {
-    let shifted = days + 719_468;
-    let (era, of_era) = (shifted / 146_097, shifted % 146_097);
-    let year_of_era = (of_era - of_era / 1_460 + of_era / 36_524 - of_era / 146_096) / 365;
-    let of_year = of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
-    let shifted_month = (5 * of_year + 2) / 153;
-    let day = of_year - (153 * shifted_month + 2) / 5 + 1;
-    let month = if shifted_month < 10 { shifted_month + 3 } else { shifted_month - 9 };
-    let year = year_of_era + era * 400 + u64::from(month <= 2);
+    let (year, month, day) = insight::disk::date(days);
     format!("{year:04}-{month:02}-{day:02}")
 }
 
